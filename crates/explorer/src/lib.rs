@@ -1,0 +1,1 @@
+//! Explores unknown rooms with a toy drone: the mission, and the explorer command.

@@ -1,0 +1,1 @@
+//! Seeded indoor worlds, a Tello-like drone and a stand-in for sparse monocular SLAM.

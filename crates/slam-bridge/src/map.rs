@@ -1,0 +1,115 @@
+//! A sparse map: points, keyframes, which keyframe saw which point, and what a map unit is worth.
+
+use nalgebra::{Isometry3, Point3, Vector3};
+
+/// Identity of a map point, stable while its map's [`Map::epoch`] stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PointId(pub u64);
+
+/// Identity of a keyframe, stable while its map's [`Map::epoch`] stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct KeyFrameId(pub u64);
+
+/// One triangulated landmark, in map units and the map's world frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapPoint {
+    /// Who this is.
+    pub id: PointId,
+    /// Where it is, map units.
+    pub position: Point3<f64>,
+    /// Mean viewing direction, from the cameras to the point, unit length, where the source gives it.
+    pub viewing_direction: Option<Vector3<f64>>,
+    /// The keyframes that observe it, ascending; empty when the source tells no observations.
+    pub observers: Vec<KeyFrameId>,
+}
+
+/// One keyframe: a camera pose that the map keeps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeyFrame {
+    /// Who this is.
+    pub id: KeyFrameId,
+    /// When its image was taken, seconds of the source's clock, where known.
+    pub time: Option<f64>,
+    /// Camera-to-world: takes camera coordinates (x right, y down, z forward) to the map's frame.
+    pub world_from_camera: Isometry3<f64>,
+}
+
+impl KeyFrame {
+    /// The optical centre in the map's frame, map units.
+    #[must_use]
+    pub fn center(&self) -> Point3<f64> {
+        Point3::from(self.world_from_camera.translation.vector)
+    }
+
+    /// The optical axis in the map's frame, unit length.
+    #[must_use]
+    pub fn forward(&self) -> Vector3<f64> {
+        self.world_from_camera.rotation * Vector3::z()
+    }
+}
+
+/// What one map unit is in metres.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Scale {
+    /// A monocular map whose unit nobody has measured yet.
+    #[default]
+    Unknown,
+    /// Metres per map unit, finite and positive.
+    MetersPerUnit(f64),
+}
+
+impl Scale {
+    /// Metres per map unit, if known.
+    #[must_use]
+    pub fn meters_per_unit(self) -> Option<f64> {
+        match self {
+            Self::Unknown => None,
+            Self::MetersPerUnit(meters) => Some(meters),
+        }
+    }
+}
+
+/// Half opening angles of a pinhole camera, radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frustum {
+    /// Half of the horizontal field of view, radians.
+    pub half_horizontal: f64,
+    /// Half of the vertical field of view, radians.
+    pub half_vertical: f64,
+}
+
+/// A whole map at one moment.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Map {
+    /// Counts resets, merges and re-initialisations: a new epoch voids all former coordinates.
+    pub epoch: u64,
+    /// What a map unit is in metres.
+    pub scale: Scale,
+    /// The points, ascending by id.
+    pub points: Vec<MapPoint>,
+    /// The keyframes, ascending by id; empty when the source tells none.
+    pub keyframes: Vec<KeyFrame>,
+    /// The camera's field of view, where known: tells what no keyframe looked at.
+    pub frustum: Option<Frustum>,
+}
+
+impl Map {
+    /// Positions of all points, in order, map units.
+    #[must_use]
+    pub fn positions(&self) -> Vec<[f64; 3]> {
+        self.points.iter().map(|point| point.position.into()).collect()
+    }
+
+    /// Whether any point names a keyframe that sees it.
+    #[must_use]
+    pub fn has_observations(&self) -> bool {
+        !self.keyframes.is_empty() && self.points.iter().any(|point| !point.observers.is_empty())
+    }
+
+    /// The keyframe with this id. Cost: a binary search.
+    #[must_use]
+    pub fn keyframe(&self, id: KeyFrameId) -> Option<&KeyFrame> {
+        let index = self.keyframes.binary_search_by_key(&id, |keyframe| keyframe.id).ok()?;
+        self.keyframes.get(index)
+    }
+}

@@ -1,0 +1,1 @@
+//! DJI Tello protocol: a sans-IO core with typed commands, replies and telemetry.
