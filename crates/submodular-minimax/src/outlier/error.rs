@@ -1,0 +1,40 @@
+//! Why outliers cannot be removed.
+
+use crate::points::NonFiniteAt;
+use thiserror::Error;
+
+/// Why outliers cannot be removed.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum OutlierError {
+    /// A point is NaN or infinite.
+    #[error("point {index} is not finite: drop it (and its observations) before cleaning")]
+    NonFinite {
+        /// Index of the first such point.
+        index: usize,
+    },
+    /// Points and observations disagree.
+    #[error("{points} points but observations of {views}: pass one list of observers per point")]
+    ViewsMismatch {
+        /// How many points were given.
+        points: usize,
+        /// How many points the observations speak of.
+        views: usize,
+    },
+    /// A setting is outside its range.
+    #[error("{field} = {value} is out of range: it must be {range}")]
+    Setting {
+        /// The field of the config.
+        field: &'static str,
+        /// What it was.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
+    },
+}
+
+impl From<NonFiniteAt> for OutlierError {
+    fn from(at: NonFiniteAt) -> Self {
+        Self::NonFinite { index: at.0 }
+    }
+}

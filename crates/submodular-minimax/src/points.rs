@@ -1,0 +1,114 @@
+//! Points in, finite columns inside: the only place that sees the caller's point type.
+
+/// A point in space: anything cheap to copy that converts to `[f64; 3]`.
+///
+/// Arrays, tuples, nalgebra and glam points and your own type with `impl From<Yours> for [f64; 3]`
+/// all qualify; there is nothing to implement.
+pub trait PointLike: Copy + Into<[f64; 3]> {}
+
+impl<P: Copy + Into<[f64; 3]>> PointLike for P {}
+
+/// Finite points scaled by a power of two so that no squared distance overflows.
+///
+/// A power of two changes exponents only, so every decision made on the scaled points is the one
+/// that exact arithmetic on the caller's points would lead to.
+pub(crate) struct Cloud {
+    /// The scaled points; coordinates lie in [-1, 1].
+    pub(crate) points: Vec<[f64; 3]>,
+    /// Caller's units per scaled unit, a power of two.
+    pub(crate) unit: f64,
+}
+
+/// The index of a point with a NaN or infinite coordinate.
+pub(crate) struct NonFiniteAt(pub(crate) usize);
+
+impl Cloud {
+    /// Checks and scales the points.
+    pub(crate) fn new<P: PointLike>(points: &[P]) -> Result<Self, NonFiniteAt> {
+        let mut points: Vec<[f64; 3]> = points.iter().map(|&point| point.into()).collect();
+        let mut largest = 0.0_f64;
+        for (index, point) in points.iter().enumerate() {
+            for coordinate in point {
+                if !coordinate.is_finite() {
+                    return Err(NonFiniteAt(index));
+                }
+                largest = largest.max(coordinate.abs());
+            }
+        }
+        let unit = power_of_two_above(largest);
+        for point in &mut points {
+            *point = scaled(*point, unit);
+        }
+        Ok(Self { points, unit })
+    }
+
+    /// How many points there are.
+    pub(crate) fn len(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// `point / unit`, coordinate by coordinate.
+pub(crate) fn scaled(point: [f64; 3], unit: f64) -> [f64; 3] {
+    point.map(|coordinate| coordinate / unit)
+}
+
+/// Squared Euclidean distance.
+pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let (x, y, z) = (a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    x * x + y * y + z * z
+}
+
+/// The median, the mean of the middle two for an even count; 0 for an empty slice. Reorders.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    let odd = values.len() % 2 == 1;
+    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    if odd {
+        return upper;
+    }
+    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    0.5 * lower + 0.5 * upper
+}
+
+/// The smallest normal power of two not below `value`; 1 for zero.
+fn power_of_two_above(value: f64) -> f64 {
+    if value == 0.0 {
+        return 1.0;
+    }
+    let exponent = value.log2().ceil().clamp(-1022.0, 1023.0);
+    2.0_f64.powi(exponent as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extreme_coordinates_stay_finite_after_scaling() {
+        for size in [1e-300, 1e-12, 1.0, 3.0, 1e12, 1e308] {
+            let cloud = Cloud::new(&[[size, 0.0, 0.0], [-size, size, 0.0]])
+                .ok()
+                .unwrap();
+            let d = squared_distance(cloud.points[0], cloud.points[1]);
+            assert!(d.is_finite() && d > 0.0, "size {size}: {d}");
+            assert!((d.sqrt() / (size / cloud.unit) - 5.0_f64.sqrt()).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn first_non_finite_point_is_named() {
+        let points = [[0.0; 3], [0.0, f64::NAN, 0.0], [f64::INFINITY, 0.0, 0.0]];
+        assert!(matches!(Cloud::new(&points), Err(NonFiniteAt(1))));
+    }
+
+    #[test]
+    fn median_of_even_and_odd_counts() {
+        assert_eq!(median(&mut []), 0.0);
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);
+    }
+}
