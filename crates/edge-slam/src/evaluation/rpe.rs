@@ -1,0 +1,222 @@
+//! Relative pose error: drift over a fixed interval, which no alignment can hide.
+//!
+//! ```text
+//! Eᵢ = (Qᵢ⁻¹ Qⱼ)⁻¹ (Pᵢ⁻¹ Pⱼ)    j = i + Δ
+//! ```
+
+use super::{ErrorStatistics, EvaluationError, StampedPose, associate};
+
+/// How far apart the two poses of a pair are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RpeInterval {
+    /// So many associated samples, > 0 (`evo_rpe --delta_unit f`).
+    Frames(usize),
+    /// So many seconds, > 0: the sample nearest to that time after the first (TUM's tool), not more
+    /// than [`RpeConfig::max_difference`] or half a 30 Hz frame away from it, whichever is greater.
+    Seconds(f64),
+}
+
+/// How the relative error is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RpeConfig {
+    /// Δ. Default: one frame, as `evo_rpe`.
+    pub interval: RpeInterval,
+    /// Whether every sample starts a pair, or only each Δ-th one (`evo_rpe` without `--all_pairs`).
+    pub all_pairs: bool,
+    /// Greatest difference of stamps that count as simultaneous, seconds, >= 0.
+    pub max_difference: f64,
+    /// Multiplies the estimate's translations first; 1 for metric estimates, the scale of a Sim(3) alignment else.
+    pub scale: f64,
+}
+
+impl Default for RpeConfig {
+    fn default() -> Self {
+        Self {
+            interval: RpeInterval::Frames(1),
+            all_pairs: false,
+            max_difference: 0.01,
+            scale: 1.0,
+        }
+    }
+}
+
+/// The relative error of a trajectory, per interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelativePoseError {
+    /// Translation part, the reference's unit per interval.
+    pub translation: ErrorStatistics,
+    /// Rotation part, radians per interval.
+    pub rotation: ErrorStatistics,
+    /// How many pairs of poses were compared.
+    pub pairs: usize,
+}
+
+/// Associates two trajectories and compares their motions over an interval.
+///
+/// # Errors
+/// [`EvaluationError`]: no pair, values that are not finite, or an interval that is not positive.
+pub fn relative_pose_error(
+    estimate: &[StampedPose],
+    reference: &[StampedPose],
+    config: &RpeConfig,
+) -> Result<RelativePoseError, EvaluationError> {
+    check(config)?;
+    let matched = associate(estimate, reference, config.max_difference)?;
+    let steps = match config.interval {
+        RpeInterval::Frames(count) => frame_steps(matched.len(), count, config.all_pairs),
+        RpeInterval::Seconds(seconds) => {
+            let times: Vec<f64> = matched.iter().map(|&(i, _)| estimate[i].time).collect();
+            second_steps(&times, seconds, config)
+        }
+    };
+    let mut lengths = Vec::with_capacity(steps.len());
+    let mut angles = Vec::with_capacity(steps.len());
+    for &(from, to) in &steps {
+        let (p, q) = (matched[from], matched[to]);
+        let truth = reference[p.1]
+            .world_from_camera
+            .inv_mul(&reference[q.1].world_from_camera);
+        let mut step = estimate[p.0]
+            .world_from_camera
+            .inv_mul(&estimate[q.0].world_from_camera);
+        step.translation.vector *= config.scale;
+        let error = truth.inv_mul(&step);
+        lengths.push(error.translation.vector.norm());
+        angles.push(error.rotation.angle());
+    }
+    let none = EvaluationError::TooFewPairs {
+        pairs: steps.len(),
+        needed: 1,
+    };
+    Ok(RelativePoseError {
+        translation: ErrorStatistics::of(&lengths).ok_or(none)?,
+        rotation: ErrorStatistics::of(&angles).ok_or(none)?,
+        pairs: steps.len(),
+    })
+}
+
+fn check(config: &RpeConfig) -> Result<(), EvaluationError> {
+    let (value, good) = match config.interval {
+        #[expect(clippy::cast_precision_loss, reason = "only shown in a message")]
+        RpeInterval::Frames(count) => (count as f64, count > 0),
+        RpeInterval::Seconds(seconds) => (seconds, seconds > 0.0 && seconds.is_finite()),
+    };
+    if !good {
+        return Err(EvaluationError::Parameter {
+            name: "interval",
+            value,
+            range: "positive",
+        });
+    }
+    if !(config.scale > 0.0 && config.scale.is_finite()) {
+        let value = config.scale;
+        return Err(EvaluationError::Parameter {
+            name: "scale",
+            value,
+            range: "positive",
+        });
+    }
+    Ok(())
+}
+
+fn frame_steps(samples: usize, interval: usize, all_pairs: bool) -> Vec<(usize, usize)> {
+    let stride = if all_pairs { 1 } else { interval };
+    (0..samples.saturating_sub(interval))
+        .step_by(stride)
+        .map(|i| (i, i + interval))
+        .collect()
+}
+
+fn second_steps(times: &[f64], seconds: f64, config: &RpeConfig) -> Vec<(usize, usize)> {
+    let mut steps = Vec::new();
+    let mut from = 0;
+    while from < times.len() {
+        let wanted = times[from] + seconds;
+        let gap = |to: &usize| (times[*to] - wanted).abs();
+        let nearest = (from + 1..times.len()).min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let hit = nearest.filter(|to| gap(to) <= config.max_difference.max(0.5 * MEAN_FRAME));
+        if let Some(to) = hit {
+            steps.push((from, to));
+        }
+        from = match hit {
+            Some(to) if !config.all_pairs => to,
+            _ => from + 1,
+        };
+    }
+    steps
+}
+
+/// A 30 Hz camera's frame time, seconds: no sample lies nearer than half of it to a wanted time in general.
+const MEAN_FRAME: f64 = 1.0 / 30.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Isometry3, Vector3};
+
+    fn straight(n: u32, speed: f64) -> Vec<StampedPose> {
+        (0..n)
+            .map(|i| {
+                let t = f64::from(i) * 0.1;
+                let shift = Vector3::new(speed * t, 0.0, 0.0);
+                StampedPose::new(t, Isometry3::new(shift, Vector3::new(0.0, 0.0, 0.2 * t)))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_trajectory_agrees_with_itself() {
+        let truth = straight(50, 1.0);
+        let rpe = relative_pose_error(&truth, &truth, &RpeConfig::default()).unwrap();
+        assert_eq!(rpe.pairs, 49);
+        assert!(rpe.translation.max < 1e-12 && rpe.rotation.max < 1e-7);
+    }
+
+    #[test]
+    fn drift_per_second_is_measured() {
+        let config = RpeConfig {
+            interval: RpeInterval::Seconds(1.0),
+            all_pairs: true,
+            ..Default::default()
+        };
+        let mut slow = straight(50, 1.0);
+        for sample in &mut slow {
+            sample.world_from_camera.rotation = nalgebra::UnitQuaternion::identity();
+        }
+        let mut fast = slow.clone();
+        for sample in &mut fast {
+            sample.world_from_camera.translation.vector *= 1.1;
+        }
+        let rpe = relative_pose_error(&fast, &slow, &config).unwrap();
+        assert_eq!(rpe.pairs, 40);
+        assert!((rpe.translation.mean - 0.1).abs() < 1e-9);
+        let scaled = RpeConfig {
+            scale: 1.0 / 1.1,
+            ..config
+        };
+        assert!(
+            relative_pose_error(&fast, &slow, &scaled)
+                .unwrap()
+                .translation
+                .max
+                < 1e-9
+        );
+    }
+
+    #[test]
+    fn bad_parameters_are_refused() {
+        let truth = straight(5, 1.0);
+        for interval in [RpeInterval::Frames(0), RpeInterval::Seconds(f64::NAN)] {
+            let config = RpeConfig {
+                interval,
+                ..Default::default()
+            };
+            assert!(relative_pose_error(&truth, &truth, &config).is_err());
+        }
+        let config = RpeConfig {
+            interval: RpeInterval::Frames(9),
+            ..Default::default()
+        };
+        assert!(relative_pose_error(&truth, &truth, &config).is_err());
+    }
+}

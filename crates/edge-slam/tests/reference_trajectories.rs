@@ -1,0 +1,136 @@
+//! The evaluator against figures that evo 1.38.1 gives for published trajectories.
+
+use std::path::PathBuf;
+
+use edge_slam::evaluation::{
+    Alignment, ApeConfig, RpeConfig, RpeInterval, StampedPose, absolute_pose_error,
+    relative_pose_error,
+};
+use edge_slam::nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+
+fn load(name: &str) -> Option<Vec<StampedPose>> {
+    let folder = std::env::var("EXPLORER_DATA")
+        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
+    let path: PathBuf = [folder.as_str(), "data", "trajectories", name]
+        .iter()
+        .collect();
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        println!("skipped: {} is not there", path.display());
+        return None;
+    };
+    let rows = text
+        .lines()
+        .filter(|line| !line.starts_with('#') && !line.trim().is_empty());
+    Some(rows.map(sample).collect())
+}
+
+fn sample(line: &str) -> StampedPose {
+    let v: Vec<f64> = line
+        .split_whitespace()
+        .map(|word| word.parse().unwrap())
+        .collect();
+    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(v[7], v[4], v[5], v[6]));
+    StampedPose::new(
+        v[0],
+        Isometry3::from_parts(Translation3::new(v[1], v[2], v[3]), rotation),
+    )
+}
+
+struct Expected {
+    estimate: &'static str,
+    alignment: Alignment,
+    pairs: usize,
+    scale: f64,
+    rmse_mean_std_max: [f64; 4],
+    frobenius_rmse: f64,
+    rpe_rmse: f64,
+}
+
+#[test]
+fn absolute_errors_equal_evo() {
+    let table = [
+        Expected {
+            estimate: "freiburg1_xyz-rgbdslam.txt",
+            alignment: Alignment::Se3,
+            pairs: 785,
+            scale: 1.0,
+            rmse_mean_std_max: [0.013470, 0.012024, 0.006071, 0.034760],
+            frobenius_rmse: 0.052542,
+            rpe_rmse: 0.005764,
+        },
+        Expected {
+            estimate: "freiburg1_xyz-rgbdslam_drift.txt",
+            alignment: Alignment::Se3,
+            pairs: 785,
+            scale: 1.0,
+            rmse_mean_std_max: [0.013470, 0.012025, 0.006071, 0.034760],
+            frobenius_rmse: 0.052543,
+            rpe_rmse: 0.005764,
+        },
+        Expected {
+            estimate: "freiburg1_xyz-ORB_kf_mono.txt",
+            alignment: Alignment::Sim3,
+            pairs: 32,
+            scale: 1.105622,
+            rmse_mean_std_max: [0.009755, 0.008219, 0.005254, 0.027924],
+            frobenius_rmse: 0.059346,
+            rpe_rmse: 0.025266,
+        },
+    ];
+    let Some(truth) = load("freiburg1_xyz-groundtruth.txt") else {
+        return;
+    };
+    for row in table {
+        let Some(estimate) = load(row.estimate) else {
+            return;
+        };
+        let config = ApeConfig {
+            alignment: row.alignment,
+            ..Default::default()
+        };
+        let ape = absolute_pose_error(&estimate, &truth, &config).unwrap();
+        assert_eq!(ape.pairs.len(), row.pairs, "{}", row.estimate);
+        assert!(
+            (ape.alignment.scale - row.scale).abs() < 1e-6,
+            "{}",
+            ape.alignment.scale
+        );
+        let found = &ape.translation;
+        for (value, expected) in [found.rmse, found.mean, found.std, found.max]
+            .iter()
+            .zip(row.rmse_mean_std_max)
+        {
+            assert!(
+                (value - expected).abs() < 1e-6,
+                "{}: {value} {expected}",
+                row.estimate
+            );
+        }
+        let rpe = relative_pose_error(&estimate, &truth, &RpeConfig::default()).unwrap();
+        assert!(
+            (ape.frobenius.rmse - row.frobenius_rmse).abs() < 1e-6,
+            "{:?}",
+            ape.frobenius
+        );
+        assert!(
+            (rpe.translation.rmse - row.rpe_rmse).abs() < 1e-6,
+            "{rpe:?}"
+        );
+    }
+}
+
+#[test]
+fn rotation_drift_over_thirty_frames_equals_evo() {
+    let Some(truth) = load("freiburg1_xyz-groundtruth.txt") else {
+        return;
+    };
+    let Some(estimate) = load("freiburg1_xyz-rgbdslam.txt") else {
+        return;
+    };
+    let config = RpeConfig {
+        interval: RpeInterval::Frames(30),
+        ..Default::default()
+    };
+    let rpe = relative_pose_error(&estimate, &truth, &config).unwrap();
+    assert!((rpe.rotation.rmse.to_degrees() - 0.887315).abs() < 1e-6);
+}
