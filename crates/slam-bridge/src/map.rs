@@ -85,7 +85,7 @@ pub struct Map {
     pub epoch: u64,
     /// What a map unit is in metres.
     pub scale: Scale,
-    /// The points, ascending by id.
+    /// The points, each id once; from a file in the file's order, else ascending by id.
     pub points: Vec<MapPoint>,
     /// The keyframes, ascending by id; empty when the source tells none.
     pub keyframes: Vec<KeyFrame>,
@@ -94,10 +94,50 @@ pub struct Map {
 }
 
 impl Map {
+    /// A map of bare points, with ids from 0 in the order given.
+    #[must_use]
+    pub fn from_positions(positions: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        let points = positions
+            .into_iter()
+            .zip(0..)
+            .map(|(position, id)| MapPoint {
+                id: PointId(id),
+                position: position.into(),
+                viewing_direction: None,
+                observers: Vec::new(),
+            });
+        Self {
+            points: points.collect(),
+            ..Self::default()
+        }
+    }
+
+    /// The same map with only the points at these places in [`Map::points`]; places beyond the end
+    /// are ignored.
+    #[must_use]
+    pub fn with_points_at(&self, indices: &[usize]) -> Self {
+        let points = indices
+            .iter()
+            .filter_map(|&index| self.points.get(index).cloned())
+            .collect();
+        Self {
+            points,
+            keyframes: self.keyframes.clone(),
+            ..Self {
+                points: Vec::new(),
+                keyframes: Vec::new(),
+                ..*self
+            }
+        }
+    }
+
     /// Positions of all points, in order, map units.
     #[must_use]
     pub fn positions(&self) -> Vec<[f64; 3]> {
-        self.points.iter().map(|point| point.position.into()).collect()
+        self.points
+            .iter()
+            .map(|point| point.position.into())
+            .collect()
     }
 
     /// Whether any point names a keyframe that sees it.
@@ -109,7 +149,10 @@ impl Map {
     /// The keyframe with this id. Cost: a binary search.
     #[must_use]
     pub fn keyframe(&self, id: KeyFrameId) -> Option<&KeyFrame> {
-        let index = self.keyframes.binary_search_by_key(&id, |keyframe| keyframe.id).ok()?;
+        let index = self
+            .keyframes
+            .binary_search_by_key(&id, |keyframe| keyframe.id)
+            .ok()?;
         self.keyframes.get(index)
     }
 }
