@@ -4,7 +4,7 @@
 //! or a map folder. Prints for example:
 //!
 //! ```text
-//! 4460 points, 67 keyframes, 21973 observations, unit unknown
+//! 4460 points, 67 keyframes, 34605 observations, unit unknown
 //! ```
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]
 

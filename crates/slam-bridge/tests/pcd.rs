@@ -1,5 +1,7 @@
 //! PCD: every encoding gives the same points, and every lie is named with its place.
 
+#![allow(clippy::expect_used, reason = "a test that fails should say where")]
+
 use slam_bridge::{ReadError, read_pcd};
 
 fn header(points: u64, data: &str) -> Vec<u8> {

@@ -1,5 +1,7 @@
 //! PLY: every encoding gives the same points, and every lie is named with its place.
 
+#![allow(clippy::expect_used, reason = "a test that fails should say where")]
+
 use slam_bridge::{Fault, Place, ReadError, read_ply};
 
 const HEADER: &str = "property float x\nproperty float y\nproperty float z\nend_header\n";

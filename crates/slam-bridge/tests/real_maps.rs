@@ -1,5 +1,7 @@
 //! Every published map at hand reads with the number of points that its description gives.
 
+#![allow(clippy::expect_used, reason = "a test that fails should say where")]
+
 use std::path::PathBuf;
 
 use slam_bridge::{read_map, read_map_folder, read_tum};

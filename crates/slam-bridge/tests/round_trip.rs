@@ -1,5 +1,7 @@
 //! What is written is read back, bit by bit; and no bytes make a reader panic.
 
+#![allow(clippy::expect_used, reason = "a test that fails should say where")]
+
 use proptest::array::{uniform3, uniform4};
 use proptest::prelude::*;
 use slam_bridge::nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
