@@ -1,6 +1,10 @@
 //! Every published map at hand reads with the number of points that its description gives.
 
-#![allow(clippy::expect_used, reason = "a test that fails should say where")]
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a test that fails should say where"
+)]
 
 use std::path::PathBuf;
 
