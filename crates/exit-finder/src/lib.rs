@@ -1,1 +1,29 @@
-//! Finds where the range profile around an agent opens: doors, corridors and other ways out of a room.
+#![doc = include_str!("../README.md")]
+
+mod angle;
+mod config;
+mod error;
+mod exit;
+mod finder;
+mod plane;
+mod plane_fit;
+mod points;
+mod profile;
+mod rule;
+mod sector;
+mod vector;
+mod view;
+
+pub use config::{
+    ExitConfig, GapTopology, HeightBand, Numbering, PaperReading, RangeAware, RangeFrom, Rule,
+};
+pub use error::{ExitError, PlaneError};
+pub use exit::{Exit, ExitKind, ExitReport, Rejected, Rejection, ScoreParts};
+pub use finder::find_exits;
+pub use plane::{AffinePlane, BASIS_TOLERANCE, MIN_SPREAD_RATIO};
+pub use plane_fit::PlaneFit;
+pub use points::PointLike;
+pub use profile::{BinStats, PointCounts, RangeProfile};
+pub use rule::exits_of_profile;
+pub use sector::Sector;
+pub use view::{ExitView, Gaze};

@@ -1,0 +1,298 @@
+//! Every constant of the search, with unit, range and source.
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::error::ExitError;
+
+/// How exits are looked for. `Default` is the range-aware rule, [`ExitConfig::paper`] Algorithm 2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExitConfig {
+    /// Number of angular bins, at least 8. Paper: 360.
+    pub bins: usize,
+    /// Points a bin needs to count as occupied, at least 1. Paper, line 14: `|B_i| > 1`, so 2.
+    pub min_count: usize,
+    /// Usable points below which the map is called insufficient. Not in the paper; 30.
+    pub min_points: usize,
+    /// Which heights about the agent count.
+    pub band: HeightBand,
+    /// Smallest passable width in map units, `2 (radius + margin)` of the drone; `None` while the
+    /// scale of the map is unknown, then only relative widths decide.
+    pub min_width: Option<f64>,
+    /// The low quantile that the profile keeps beside minimum and median, in `[0, 1]`; 0.25.
+    pub quantile: f64,
+    /// The rule that tells an opening from a wall.
+    pub rule: Rule,
+}
+
+/// Points outside the band are not part of the profile: floor and ceiling would fill the doorway.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HeightBand {
+    /// All heights (the paper).
+    Off,
+    /// `|height − agent's height| ≤ f ×` median range of all points, `f > 0`. Needs no scale.
+    Relative(f64),
+    /// Heights above the agent between the two bounds, map units along the plane's normal.
+    Absolute {
+        /// Lower bound, usually negative.
+        from: f64,
+        /// Upper bound.
+        to: f64,
+    },
+}
+
+/// The two readings of "where does the profile open".
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rule {
+    /// Empty runs and runs whose range jumps above their surroundings (default).
+    RangeAware(RangeAware),
+    /// The longest run of empty bins.
+    Paper(PaperReading),
+}
+
+/// Constants of the range-aware rule. All are ratios or angles, so the rule needs no scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RangeAware {
+    /// Half width of the smoothing window, radians in `[0, π/4]`; 5 degrees.
+    pub window: f64,
+    /// Half width of the neighbourhood that stands for the room's wall, radians; 50 degrees.
+    pub neighbourhood: f64,
+    /// Smallest ratio of a bin's range to its surroundings for a bin to be called far; above 1.
+    pub jump: f64,
+    /// Smallest ratio of the far range to the continued wall at one edge at least; above 1.
+    pub edge_jump: f64,
+    /// Points that an empty run would hold were it a wall like its surroundings, at least.
+    pub min_expected: f64,
+    /// Empty runs wider than this were never looked at, radians; a quarter turn, because an opening
+    /// that subtends more than that holds the agent.
+    pub unseen: f64,
+    /// How far behind the jambs the exit point lies, as a share of their range, in `[0, 1]`; 0.2.
+    pub beyond: f64,
+}
+
+/// Where the text of Algorithm 2 is ambiguous, the choice made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PaperReading {
+    /// What `r` is measured from.
+    pub range_from: RangeFrom,
+    /// Which bin numbers exist.
+    pub numbering: Numbering,
+    /// Whether a gap may cross 0 degrees.
+    pub gap: GapTopology,
+}
+
+/// The exit's distance `r` (lines 10 to 12).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RangeFrom {
+    /// Mean of `‖p‖` in plane coordinates: distances from the plane's origin, as printed.
+    PlaneOrigin,
+    /// Mean of `‖p − x'‖`: distances from the agent. The same when the agent is the origin.
+    Agent,
+}
+
+/// The bins `[i°, (i + 1)°)`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Numbering {
+    /// `i = 1..=n` as printed: the first degree belongs to no bin and bin n is always empty.
+    FromOne,
+    /// `i = 0..n`: every bearing has its bin.
+    FromZero,
+}
+
+/// The largest empty segment "in [0, 2π]".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GapTopology {
+    /// A segment of the line, as printed: a gap across 0 is cut in two.
+    Linear,
+    /// A run on the circle.
+    Circular,
+}
+
+impl Default for ExitConfig {
+    fn default() -> Self {
+        Self {
+            bins: 360,
+            min_count: 2,
+            min_points: 30,
+            band: HeightBand::Relative(0.25),
+            min_width: None,
+            quantile: 0.25,
+            rule: Rule::RangeAware(RangeAware::default()),
+        }
+    }
+}
+
+impl Default for RangeAware {
+    fn default() -> Self {
+        Self {
+            window: 5f64.to_radians(),
+            neighbourhood: 50f64.to_radians(),
+            jump: 1.3,
+            edge_jump: 1.25,
+            min_expected: 8.0,
+            unseen: FRAC_PI_2,
+            beyond: 0.2,
+        }
+    }
+}
+
+impl ExitConfig {
+    /// Algorithm 2 as printed: 360 bins numbered from one, more than one point fills a bin, all
+    /// heights, the longest run on the line `[0, 2π]`, `r` measured from the plane's origin.
+    ///
+    /// Bearings are taken about the agent: "the angle between x' and p" read as the angle of two
+    /// vectors is undefined for an agent at the origin and never exceeds half a turn.
+    pub fn paper() -> Self {
+        Self::with_reading(PaperReading {
+            range_from: RangeFrom::PlaneOrigin,
+            numbering: Numbering::FromOne,
+            gap: GapTopology::Linear,
+        })
+    }
+
+    /// Algorithm 2 with its slips repaired: bins from zero, circular runs, `r` about the agent.
+    pub fn paper_repaired() -> Self {
+        Self::with_reading(PaperReading {
+            range_from: RangeFrom::Agent,
+            numbering: Numbering::FromZero,
+            gap: GapTopology::Circular,
+        })
+    }
+
+    fn with_reading(reading: PaperReading) -> Self {
+        Self {
+            band: HeightBand::Off,
+            rule: Rule::Paper(reading),
+            ..Self::default()
+        }
+    }
+
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// [`ExitError::Config`] with the first field that is outside.
+    pub fn validate(&self) -> Result<(), ExitError> {
+        within("bins", self.bins as f64, 8.0, 1e6, "8..=1000000")?;
+        within("min_count", self.min_count as f64, 1.0, 1e9, "1.. points")?;
+        within("quantile", self.quantile, 0.0, 1.0, "[0, 1]")?;
+        if let Some(width) = self.min_width {
+            within("min_width", width, 0.0, f64::MAX, "[0, ∞) map units")?;
+        }
+        match self.band {
+            HeightBand::Off => {}
+            HeightBand::Relative(f) => {
+                within(
+                    "band",
+                    f,
+                    f64::MIN_POSITIVE,
+                    f64::MAX,
+                    "(0, ∞) of the median range",
+                )?;
+            }
+            HeightBand::Absolute { from, to } => {
+                within("band.from", from, -f64::MAX, to, "(-∞, band.to]")?;
+                within("band.to", to, from, f64::MAX, "[band.from, ∞)")?;
+            }
+        }
+        match &self.rule {
+            Rule::Paper(_) => Ok(()),
+            Rule::RangeAware(rule) => rule.validate(),
+        }
+    }
+}
+
+impl RangeAware {
+    fn validate(&self) -> Result<(), ExitError> {
+        use std::f64::consts::{FRAC_PI_4, PI, TAU};
+        within("window", self.window, 0.0, FRAC_PI_4, "[0, π/4] rad")?;
+        within(
+            "neighbourhood",
+            self.neighbourhood,
+            self.window,
+            PI,
+            "[window, π] rad",
+        )?;
+        within("jump", self.jump, 1.0, f64::MAX, "[1, ∞)")?;
+        within("edge_jump", self.edge_jump, 1.0, f64::MAX, "[1, ∞)")?;
+        within(
+            "min_expected",
+            self.min_expected,
+            0.0,
+            f64::MAX,
+            "[0, ∞) points",
+        )?;
+        within("unseen", self.unseen, f64::MIN_POSITIVE, TAU, "(0, 2π] rad")?;
+        within("beyond", self.beyond, 0.0, 1.0, "[0, 1]")
+    }
+}
+
+fn within(
+    field: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+    range: &'static str,
+) -> Result<(), ExitError> {
+    // A NaN fails both comparisons and is therefore outside.
+    if value >= low && value <= high {
+        Ok(())
+    } else {
+        Err(ExitError::Config {
+            field,
+            value,
+            range,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_valid_and_each_bad_field_is_named() {
+        assert_eq!(ExitConfig::default().validate(), Ok(()));
+        assert_eq!(ExitConfig::paper().validate(), Ok(()));
+        let config = ExitConfig {
+            bins: 7,
+            ..Default::default()
+        };
+        assert!(matches!(
+            config.validate(),
+            Err(ExitError::Config { field: "bins", .. })
+        ));
+        let config = ExitConfig {
+            quantile: f64::NAN,
+            ..Default::default()
+        };
+        assert!(matches!(
+            config.validate(),
+            Err(ExitError::Config {
+                field: "quantile",
+                ..
+            })
+        ));
+        let rule = RangeAware {
+            jump: 0.9,
+            ..Default::default()
+        };
+        let config = ExitConfig {
+            rule: Rule::RangeAware(rule),
+            ..Default::default()
+        };
+        assert!(matches!(
+            config.validate(),
+            Err(ExitError::Config { field: "jump", .. })
+        ));
+        let config = ExitConfig {
+            band: HeightBand::Absolute { from: 1.0, to: 0.0 },
+            ..Default::default()
+        };
+        assert!(matches!(
+            config.validate(),
+            Err(ExitError::Config {
+                field: "band.from",
+                ..
+            })
+        ));
+    }
+}

@@ -1,0 +1,94 @@
+//! The range profile: what lies how far in which direction, in `n` angular bins.
+//!
+//! Bins are half-open, `[i·2π/n, (i+1)·2π/n)`, numbered from 0 at the plane's first axis, and they
+//! close into a circle.
+
+mod binning;
+mod statistics;
+
+pub use statistics::BinStats;
+pub(crate) use statistics::median;
+
+use std::f64::consts::TAU;
+
+use crate::angle::wrap;
+use crate::plane::AffinePlane;
+use crate::vector::{add, scale};
+
+/// Range statistics per angular bin around one position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RangeProfile {
+    /// The plane whose coordinates the bearings refer to.
+    pub plane: AffinePlane,
+    /// Where the ranges start, world.
+    pub agent: [f64; 3],
+    /// One entry per bin, `bins[0]` starts at bearing 0.
+    pub bins: Vec<BinStats>,
+    /// Mean range of all points in the profile, virtual ones left out, map units.
+    pub mean_range: f64,
+    /// Lower median of the same ranges, map units.
+    pub median_range: f64,
+    /// The paper's `r` under the configured reading: [`Self::mean_range`], or the mean distance
+    /// from the plane's origin.
+    pub radius: f64,
+    /// The band that was used, heights above the agent in map units; `None`: all heights.
+    pub band: Option<[f64; 2]>,
+    /// What happened to the points.
+    pub counts: PointCounts,
+}
+
+/// How many points went where.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PointCounts {
+    /// Points given, without the virtual ones.
+    pub given: usize,
+    /// Points in the profile, without the virtual ones.
+    pub used: usize,
+    /// Skipped: a coordinate is NaN or infinite.
+    pub non_finite: usize,
+    /// Skipped: at the agent, bearing undefined.
+    pub at_agent: usize,
+    /// Skipped: outside the height band.
+    pub outside_band: usize,
+    /// Virtual points in the profile.
+    pub virtual_used: usize,
+}
+
+impl RangeProfile {
+    /// Width of a bin, radians.
+    pub fn bin_width(&self) -> f64 {
+        TAU / self.bins.len() as f64
+    }
+
+    /// The bearing at which a bin starts, radians in `[0, 2π)`.
+    pub fn start_of(&self, bin: usize) -> f64 {
+        (bin % self.bins.len()) as f64 * self.bin_width()
+    }
+
+    /// The bearing in the middle of a bin, radians in `[0, 2π)`.
+    pub fn centre_of(&self, bin: usize) -> f64 {
+        ((bin % self.bins.len()) as f64 + 0.5) * self.bin_width()
+    }
+
+    /// The bin of a bearing; any finite angle is wrapped.
+    pub fn bin_of(&self, bearing: f64) -> usize {
+        ((wrap(bearing) / self.bin_width()) as usize).min(self.bins.len() - 1)
+    }
+
+    /// The point `range` away from the agent in a bearing, at the agent's height, world.
+    pub fn at(&self, bearing: f64, range: f64) -> [f64; 3] {
+        add(self.agent, scale(self.direction(bearing), range))
+    }
+
+    /// Unit vector of a bearing, world.
+    pub fn direction(&self, bearing: f64) -> [f64; 3] {
+        self.plane.direction([bearing.cos(), bearing.sin()])
+    }
+
+    /// The end of a bin's spoke at its mean range, as the paper's figure draws it; `None` when the
+    /// bin is empty.
+    pub fn spoke(&self, bin: usize) -> Option<[f64; 3]> {
+        let stats = self.bins.get(bin)?;
+        (stats.count > 0).then(|| self.at(self.centre_of(bin), stats.mean))
+    }
+}
