@@ -1,1 +1,20 @@
-//! Sampling-based motion planners and path refiners in any dimension over a motion-validity closure.
+#![doc = include_str!("../README.md")]
+
+mod bounds;
+mod euclid;
+mod goals;
+mod motion;
+pub mod nearest;
+mod path;
+mod planner;
+pub mod refine;
+
+pub use bounds::{Bounds, BoundsError};
+pub use euclid::PointLike;
+pub use goals::Goals;
+pub use motion::MotionValidator;
+pub use path::{Path, PathError};
+pub use planner::{
+    ConfigError, Plan, PlanError, Progress, Rrt, RrtConfig, RrtConnect, Stop, rrt, rrt_connect,
+};
+pub use refine::Refined;
