@@ -1,1 +1,9 @@
-//! Seeded indoor worlds, a Tello-like drone and a stand-in for sparse monocular SLAM.
+#![doc = include_str!("../README.md")]
+
+mod random;
+mod world;
+
+pub use world::{
+    Door, FloorPlan, Furniture, Landmark, PRESETS, Reach, Room, Solid, SolidKind, Start,
+    TextureConfig, World, WorldError, coverage, generate,
+};
