@@ -15,6 +15,7 @@ pub use goals::Goals;
 pub use motion::MotionValidator;
 pub use path::{Path, PathError};
 pub use planner::{
-    ConfigError, Plan, PlanError, Progress, Rrt, RrtConfig, RrtConnect, Stop, rrt, rrt_connect,
+    ConfigError, Plan, PlanError, Progress, Rrt, RrtConfig, RrtConnect, RrtStar, RrtStarConfig,
+    Stop, rrt, rrt_connect, rrt_star,
 };
 pub use refine::Refined;

@@ -4,6 +4,7 @@
 //! its points, which bounds the distance from below. Where one child holds more than three quarters of the points of
 //! its parent, that subtree is rebuilt, so insertion costs O(log² n) on average over any sequence, sorted ones included.
 
+use super::closer;
 use crate::euclid::squared_distance;
 
 /// Most points of a leaf whose points differ.
@@ -132,6 +133,16 @@ impl<const D: usize> KdTree<D> {
         (best.0 != usize::MAX).then_some(best)
     }
 
+    /// The `k` nearest points (all of them where there are fewer), each with its squared distance, nearest first; of equals
+    /// the lower index first.
+    pub fn nearest_k(&self, query: &[f64; D], k: usize) -> Vec<(usize, f64)> {
+        let mut best = Vec::with_capacity(k.min(self.len) + 1);
+        if k > 0 {
+            self.search_nearest_k(ROOT, query, k, &mut best);
+        }
+        best
+    }
+
     /// Indices of all points at most `radius` away, ascending.
     pub fn within(&self, query: &[f64; D], radius: f64) -> Vec<usize> {
         let mut found = Vec::new();
@@ -147,27 +158,59 @@ impl<const D: usize> KdTree<D> {
             Kind::Leaf(items) => {
                 for item in items {
                     let squared = squared_distance(query, &item.point);
-                    if squared < best.1 || (squared == best.1 && item.index < best.0) {
+                    if closer(&(item.index, squared), best) {
                         *best = (item.index, squared);
                     }
                 }
             }
             Kind::Split { left, right, .. } => {
-                let (left, right) = (*left, *right);
-                let to_left = self.nodes[left].squared_distance_to(query);
-                let to_right = self.nodes[right].squared_distance_to(query);
-                let order = if to_left <= to_right {
-                    [(left, to_left), (right, to_right)]
-                } else {
-                    [(right, to_right), (left, to_left)]
-                };
-                for (child, bound) in order {
+                for (child, bound) in self.nearer_first(*left, *right, query) {
                     // Equality too: an equal distance under a lower index wins.
                     if bound <= best.1 {
                         self.search_nearest(child, query, best);
                     }
                 }
             }
+        }
+    }
+
+    fn search_nearest_k(
+        &self,
+        at: usize,
+        query: &[f64; D],
+        k: usize,
+        best: &mut Vec<(usize, f64)>,
+    ) {
+        match &self.nodes[at].kind {
+            Kind::Leaf(items) => {
+                for item in items {
+                    let found = (item.index, squared_distance(query, &item.point));
+                    let place = best.partition_point(|other| closer(other, &found));
+                    // A NaN distance is closer to nothing and must not be kept.
+                    if place < k && found.1 < f64::INFINITY {
+                        best.insert(place, found);
+                        best.truncate(k);
+                    }
+                }
+            }
+            Kind::Split { left, right, .. } => {
+                for (child, bound) in self.nearer_first(*left, *right, query) {
+                    if best.len() < k || best.last().is_some_and(|worst| bound <= worst.1) {
+                        self.search_nearest_k(child, query, k, best);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Both children with the squared distances to their boxes, the nearer one first.
+    fn nearer_first(&self, left: usize, right: usize, query: &[f64; D]) -> [(usize, f64); 2] {
+        let to_left = self.nodes[left].squared_distance_to(query);
+        let to_right = self.nodes[right].squared_distance_to(query);
+        if to_left <= to_right {
+            [(left, to_left), (right, to_right)]
+        } else {
+            [(right, to_right), (left, to_left)]
         }
     }
 
@@ -265,18 +308,18 @@ impl<const D: usize> Node<D> {
     /// Counts a point and widens the box to it.
     fn admit(&mut self, point: &[f64; D]) {
         self.count += 1;
-        for axis in 0..D {
-            self.min[axis] = self.min[axis].min(point[axis]);
-            self.max[axis] = self.max[axis].max(point[axis]);
+        for (axis, &value) in point.iter().enumerate() {
+            self.min[axis] = self.min[axis].min(value);
+            self.max[axis] = self.max[axis].max(value);
         }
     }
 
     /// Never above the distance to a point inside, rounding included: each step is monotone and in the same order.
     fn squared_distance_to(&self, query: &[f64; D]) -> f64 {
         let mut sum = 0.0;
-        for axis in 0..D {
-            let below = self.min[axis] - query[axis];
-            let above = query[axis] - self.max[axis];
+        for (axis, &value) in query.iter().enumerate() {
+            let below = self.min[axis] - value;
+            let above = value - self.max[axis];
             let gap = below.max(above).max(0.0);
             sum += gap * gap;
         }
@@ -336,6 +379,7 @@ mod tests {
             assert_eq!(tree.nearest(query), scan.nearest(query), "{count} points");
             if count % 7 == 0 {
                 assert_eq!(tree.within(query, 0.3), scan.within(query, 0.3));
+                assert_eq!(tree.nearest_k(query, 9), scan.nearest_k(query, 9));
             }
         }
         assert_eq!(tree.len(), points.len());
@@ -369,6 +413,20 @@ mod tests {
         let mut mostly_equal = equal;
         mostly_equal.extend(random_points::<2>(500, 11));
         agree(&mostly_equal, &random_points(53, 12));
+    }
+
+    #[test]
+    fn empty_trees_and_queries_that_are_no_points_find_nothing() {
+        let mut tree = KdTree::new();
+        assert!(tree.is_empty() && tree.nearest(&[0.0, 0.0]).is_none());
+        assert!(tree.nearest_k(&[0.0, 0.0], 3).is_empty());
+        tree.insert([1.0, 2.0]);
+        tree.insert([f64::NAN, 2.0]);
+        assert_eq!(tree.nearest(&[1.0, 2.0]), Some((0, 0.0)));
+        assert_eq!(tree.nearest_k(&[1.0, 2.0], 3), [(0, 0.0)]);
+        assert!(tree.nearest_k(&[1.0, 2.0], 0).is_empty());
+        assert!(tree.nearest(&[f64::NAN, 0.0]).is_none());
+        assert!(tree.within(&[1.0, 2.0], -1.0).is_empty());
     }
 
     #[test]

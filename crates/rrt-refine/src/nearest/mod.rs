@@ -9,3 +9,8 @@ mod linear_scan;
 
 pub use kd_tree::KdTree;
 pub use linear_scan::LinearScan;
+
+/// Whether `a` (index, squared distance) comes before `b`; false where a distance is NaN.
+fn closer(a: &(usize, f64), b: &(usize, f64)) -> bool {
+    a.1 < b.1 || (a.1 == b.1 && a.0 < b.0)
+}

@@ -33,6 +33,53 @@ impl Default for RrtConfig {
     }
 }
 
+/// Parameters of [`rrt_star`](crate::rrt_star).
+///
+/// None is the exploration paper's, which does not use RRT*.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RrtStarConfig {
+    /// What it shares with RRT. `step_length` bounds the step to a new node; a better parent may be farther away.
+    pub rrt: RrtConfig,
+    /// Multiple of the number of neighbours that asymptotic optimality needs, e (1 + 1/D) ln n; 1 or more. Default 1.1
+    /// (Karaman and Frazzoli 2011 ask for more than 1; motion planning libraries take 1.1).
+    pub rewire_factor: f64,
+    /// Sample only where the path can still get shorter, once there is one (Informed RRT*). Default false.
+    pub informed: bool,
+}
+
+impl Default for RrtStarConfig {
+    fn default() -> Self {
+        Self {
+            rrt: RrtConfig::default(),
+            rewire_factor: 1.1,
+            informed: false,
+        }
+    }
+}
+
+impl RrtStarConfig {
+    /// Informed RRT* with the other defaults.
+    pub fn informed() -> Self {
+        Self {
+            informed: true,
+            ..Self::default()
+        }
+    }
+
+    /// # Errors
+    /// The first parameter that is out of its range.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        self.rrt.validate()?;
+        // The upper end keeps the number of neighbours sensible.
+        if !(1.0..=1000.0).contains(&self.rewire_factor) {
+            return Err(ConfigError::RewireFactor {
+                value: self.rewire_factor,
+            });
+        }
+        Ok(())
+    }
+}
+
 /// Which parameter of a planner is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -46,6 +93,12 @@ pub enum ConfigError {
     /// `goal_bias` is outside 0 to 1.
     #[error("goal_bias is {value}; it is a share from 0 to 1")]
     GoalBias {
+        /// The value.
+        value: f64,
+    },
+    /// `rewire_factor` is outside 1 to 1000.
+    #[error("rewire_factor is {value}; it is a multiple from 1 to 1000")]
+    RewireFactor {
         /// The value.
         value: f64,
     },
