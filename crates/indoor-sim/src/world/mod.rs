@@ -23,7 +23,6 @@ pub use solid::{Solid, SolidKind};
 pub use texture::TextureConfig;
 
 pub(crate) use coverage::FLYING_HEIGHT;
-pub(crate) use solid::along;
 
 use crate::random::{Purpose, stream};
 use solid_index::SolidIndex;

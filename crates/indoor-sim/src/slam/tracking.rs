@@ -1,0 +1,317 @@
+//! What happens with each picture: begin a map, track, extend the map, lose it, find back.
+
+use core::time::Duration;
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use rand::RngExt;
+use slam_bridge::{SlamUpdate, TrackingState};
+
+use super::detection::{Detection, detect};
+use super::drift::{Drift, mean_at, slid};
+use super::mapping::{Frame, Mapping, Surroundings};
+use super::triangulation::parallax;
+use super::{LastFrame, Reference, SyntheticSlam};
+use crate::random::normal3;
+
+/// Two keyframes are at least this far apart, seconds.
+const KEYFRAME_PAUSE: Duration = Duration::from_millis(200);
+
+/// A frame becomes a keyframe when it tracks less than this share of what the last keyframe tracked (ORB-SLAM: 0.9).
+const KEYFRAME_SHARE: f64 = 0.9;
+
+/// A picture that a map may begin with is given up after this long.
+const REFERENCE_AGE: Duration = Duration::from_secs(20);
+
+/// Chance, relative to a right point, that a wrong point is matched again.
+const WRONG_MATCH: f64 = 0.35;
+
+/// Turning speed that blurs the picture until nothing is matched, rad/s.
+const BLUR_RATE: f64 = 4.0;
+
+impl SyntheticSlam {
+    /// Takes a picture from the true pose of a camera that turns at `turn_rate` rad/s.
+    pub(crate) fn observe(
+        &mut self,
+        time: Duration,
+        world_from_camera: &Isometry3<f64>,
+        turn_rate: f64,
+    ) {
+        let budget = self.config.feature_budget;
+        let detections = detect(&self.world, &self.camera, world_from_camera, budget);
+        let (pose, tracked) = match self.state {
+            TrackingState::NotInitialized => self.try_to_begin(time, world_from_camera, detections),
+            _ => self.track(time, world_from_camera, turn_rate, &detections),
+        };
+        let epoch = self.epoch;
+        let tracked_points = tracked;
+        let state = self.state;
+        let world_from_camera = pose.filter(|_| state == TrackingState::Tracking);
+        self.updates.push_back(SlamUpdate {
+            time,
+            state,
+            world_from_camera,
+            epoch,
+            tracked_points,
+        });
+    }
+
+    /// Compares with the reference picture; begins a map when the camera was truly translated.
+    fn try_to_begin(
+        &mut self,
+        time: Duration,
+        pose: &Isometry3<f64>,
+        detections: Vec<Detection>,
+    ) -> (Option<Isometry3<f64>>, usize) {
+        let fresh = Reference {
+            time,
+            pose: *pose,
+            detections,
+        };
+        let Some(reference) = self.reference.take() else {
+            self.reference =
+                Some(fresh).filter(|frame| frame.detections.len() >= self.config.least_common);
+            return (None, 0);
+        };
+        let common = self.common_parallax(&reference, &fresh);
+        if common.len() < self.config.least_common || time > reference.time + REFERENCE_AGE {
+            self.reference =
+                Some(fresh).filter(|frame| frame.detections.len() >= self.config.least_common);
+            return (None, 0);
+        }
+        let baseline = (reference.pose.translation.vector - pose.translation.vector).norm();
+        let median = common[common.len() / 2];
+        if baseline < self.config.least_baseline || median < self.config.least_parallax {
+            self.reference = Some(reference);
+            return (None, 0);
+        }
+        self.begin_map(&reference, &fresh)
+    }
+
+    /// Parallax of the landmarks that both pictures show, ascending, rad.
+    fn common_parallax(&self, a: &Reference, b: &Reference) -> Vec<f64> {
+        let centers = [a.pose, b.pose].map(|pose| pose.translation.vector);
+        let shared = |detection: &&Detection| {
+            a.detections
+                .binary_search_by_key(&detection.landmark, |other| other.landmark)
+                .is_ok()
+        };
+        let mut angles: Vec<f64> = b
+            .detections
+            .iter()
+            .filter(shared)
+            .map(|detection| {
+                let place = self.world.landmarks()[detection.landmark as usize].position;
+                parallax(place.into(), centers[0], centers[1])
+            })
+            .collect();
+        angles.sort_unstable_by(f64::total_cmp);
+        angles
+    }
+
+    fn begin_map(
+        &mut self,
+        first: &Reference,
+        second: &Reference,
+    ) -> (Option<Isometry3<f64>>, usize) {
+        let frame = |reference: &Reference| Frame {
+            time: reference.time.as_secs_f64(),
+            true_pose: reference.pose,
+            estimate: reference.pose,
+            drift: Drift::identity(),
+        };
+        let mut mapping = Mapping::new(self.world.landmarks().len());
+        mapping.begin(
+            (frame(first), &first.detections),
+            (frame(second), &second.detections),
+            &mut Surroundings {
+                world: &self.world,
+                config: &self.config,
+                focal: self.camera.fx,
+                rng: &mut self.rng,
+            },
+        );
+        let points = mapping.points.len();
+        if points < self.config.least_common / 2 {
+            self.reference = Some(first.clone());
+            return (None, 0);
+        }
+        self.mapping = mapping;
+        self.state = TrackingState::Tracking;
+        self.failing_since = None;
+        self.last = Some(LastFrame {
+            keyframe_time: second.time,
+            keyframe_pose: second.pose,
+            keyframe_tracked: points,
+            drift: Drift::identity(),
+            jitter: Vector3::zeros(),
+        });
+        (
+            Some(self.in_map(&first.pose.inverse(), &second.pose)),
+            points,
+        )
+    }
+
+    /// Tracks the map, or tries to recognise it when lost.
+    fn track(
+        &mut self,
+        time: Duration,
+        pose: &Isometry3<f64>,
+        turn_rate: f64,
+        detections: &[Detection],
+    ) -> (Option<Isometry3<f64>>, usize) {
+        let (right, wrong) = self.match_points(turn_rate, detections);
+        let needed = match self.state {
+            TrackingState::Lost => self.config.relocalization_points,
+            _ => self.config.least_tracked,
+        };
+        if right.len() < needed {
+            self.fail(time);
+            if self.state != TrackingState::Tracking {
+                return (None, 0);
+            }
+        } else {
+            self.state = TrackingState::Tracking;
+            self.failing_since = None;
+        }
+        let Some(estimate) = self.estimate_pose(pose, detections, &right) else {
+            return (None, 0);
+        };
+        if right.len() >= needed {
+            self.consider_keyframe(time, pose, &estimate, detections, (&right, &wrong));
+        }
+        let first = self
+            .mapping
+            .frames
+            .first()
+            .map(|frame| frame.estimate.inverse());
+        (
+            first.map(|map_from_space| self.in_map(&map_from_space, &estimate)),
+            right.len(),
+        )
+    }
+
+    /// Indices of the map points matched in the picture: those that agree with the pose, and wrong ones.
+    fn match_points(&mut self, turn_rate: f64, detections: &[Detection]) -> (Vec<u32>, Vec<u32>) {
+        let sharp = (1.0 - turn_rate.abs() / BLUR_RATE).clamp(0.0, 1.0);
+        let chance = self.config.match_chance * sharp;
+        let (mut right, mut wrong) = (Vec::new(), Vec::new());
+        for detection in detections {
+            let Some(index) = self.mapping.index_of(detection.landmark) else {
+                continue;
+            };
+            let draw = self.rng.random::<f64>();
+            if self.mapping.points[index as usize].outlier.is_none() {
+                if draw < chance {
+                    right.push(index);
+                }
+            } else if draw < chance * WRONG_MATCH {
+                wrong.push(index);
+            }
+        }
+        (right, wrong)
+    }
+
+    /// Too little to track: after a while the map is lost, and after a longer while forgotten if so configured.
+    fn fail(&mut self, time: Duration) {
+        let since = *self.failing_since.get_or_insert(time);
+        if time >= since + self.config.patience {
+            self.state = TrackingState::Lost;
+        }
+        if self
+            .config
+            .reset_after
+            .is_some_and(|limit| time >= since + limit)
+        {
+            self.reset();
+        }
+    }
+
+    /// The pose as measured against the matched points: drifted as they are, and noisy.
+    fn estimate_pose(
+        &mut self,
+        pose: &Isometry3<f64>,
+        detections: &[Detection],
+        matched: &[u32],
+    ) -> Option<Isometry3<f64>> {
+        let center = pose.translation.vector;
+        let mut weights = vec![0.0; self.mapping.frames.len()];
+        for &index in matched {
+            weights[self.mapping.points[index as usize].born as usize] += 1.0;
+        }
+        let frames = &self.mapping.frames;
+        let used = weights
+            .iter()
+            .zip(frames)
+            .filter(|(weight, _)| **weight > 0.0);
+        let last = self.last.as_mut()?;
+        let drift = mean_at(center, used.map(|(&weight, frame)| (frame.drift, weight)));
+        last.drift = drift.unwrap_or(last.drift);
+        let mut ranges: Vec<f64> = detections.iter().map(|detection| detection.range).collect();
+        ranges.sort_unstable_by(f64::total_cmp);
+        let range = ranges.get(ranges.len() / 2).copied().unwrap_or(3.0);
+        let scarce = (100.0 / (matched.len() as f64 + 1.0))
+            .sqrt()
+            .clamp(0.5, 3.0);
+        // The error changes slowly from frame to frame, as that of a filter does.
+        let fresh = normal3(&mut self.rng) * (self.config.pose_noise * range * scarce);
+        last.jitter = last.jitter * 0.7 + fresh * (1.0_f64 - 0.7 * 0.7).sqrt();
+        let attitude = normal3(&mut self.rng) * (self.config.attitude_noise * scarce);
+        let truth = last.drift * pose;
+        let rotation = UnitQuaternion::from_scaled_axis(attitude) * truth.rotation;
+        let place = Translation3::from(truth.translation.vector + last.jitter);
+        Some(Isometry3::from_parts(place, rotation))
+    }
+
+    /// Adds a keyframe when the picture shows much that the last one did not.
+    fn consider_keyframe(
+        &mut self,
+        time: Duration,
+        pose: &Isometry3<f64>,
+        estimate: &Isometry3<f64>,
+        detections: &[Detection],
+        (right, wrong): (&[u32], &[u32]),
+    ) {
+        let Some(last) = self.last.as_mut() else {
+            return;
+        };
+        let few = (right.len() as f64) < KEYFRAME_SHARE * last.keyframe_tracked as f64;
+        if !few || time < last.keyframe_time + KEYFRAME_PAUSE {
+            last.keyframe_tracked = last.keyframe_tracked.max(right.len());
+            return;
+        }
+        let moved = (pose.translation.vector - last.keyframe_pose.translation.vector).norm();
+        let turned = pose.rotation.angle_to(&last.keyframe_pose.rotation);
+        let slide = (
+            self.config.drift_per_meter * moved,
+            self.config.drift_per_radian * turned,
+        );
+        let drift = slid(&last.drift, pose.translation.vector, slide, &mut self.rng);
+        last.keyframe_time = time;
+        last.keyframe_pose = *pose;
+        let mut matched = [right, wrong].concat();
+        matched.sort_unstable();
+        let frame = Frame {
+            time: time.as_secs_f64(),
+            true_pose: *pose,
+            estimate: *estimate,
+            drift,
+        };
+        self.mapping.insert(
+            frame,
+            detections,
+            &matched,
+            &mut Surroundings {
+                world: &self.world,
+                config: &self.config,
+                focal: self.camera.fx,
+                rng: &mut self.rng,
+            },
+        );
+        let known = detections.iter().filter(|d| {
+            self.mapping
+                .point_of(d.landmark)
+                .is_some_and(|point| point.outlier.is_none())
+        });
+        last.keyframe_tracked = (known.count() as f64 * self.config.match_chance) as usize;
+    }
+}
