@@ -50,8 +50,8 @@ impl Default for SlamConfig {
     fn default() -> Self {
         Self {
             feature_budget: 1000,
-            match_chance: 0.8,
-            triangulation_chance: 0.5,
+            match_chance: 0.85,
+            triangulation_chance: 0.6,
             least_parallax: 1.0_f64.to_radians(),
             pixel_noise: 1.5,
             depth_floor: 0.015,

@@ -29,13 +29,13 @@ pub struct TextureConfig {
 impl Default for TextureConfig {
     fn default() -> Self {
         Self {
-            blank_share: 0.45,
-            background: 14.0,
-            patch: 260.0,
-            furniture: 90.0,
-            floor: 8.0,
-            ceiling: 1.5,
-            edge: 18.0,
+            blank_share: 0.4,
+            background: 30.0,
+            patch: 420.0,
+            furniture: 170.0,
+            floor: 16.0,
+            ceiling: 3.0,
+            edge: 25.0,
         }
     }
 }
@@ -150,7 +150,7 @@ impl<R: Rng> Painter<'_, R> {
             high[horizontal] = face.low[horizontal] + length * (number + 1) as f64 / panels;
             let blank = self.rng.random::<f64>() < self.config.blank_share;
             let vivid = uniform(self.rng, 0.4, 1.6);
-            let has_patch = self.rng.random::<f64>() < 0.75;
+            let has_patch = self.rng.random::<f64>() < 0.85;
             let panel = face.part(low, high);
             if blank {
                 continue;
