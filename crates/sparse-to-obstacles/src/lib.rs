@@ -1,1 +1,19 @@
-//! Sparse points, and what the camera saw through, to clusters, convex obstacles and proven free space.
+#![doc = include_str!("../README.md")]
+
+mod free_space;
+mod hull;
+mod kmeans;
+mod obstacle;
+mod point;
+mod space;
+mod vector;
+
+pub use free_space::{FreeSpace, FreeSpaceConfig, FreeSpaceError, Ray, VoxelState};
+pub use hull::{Hull, HullKind};
+pub use kmeans::{
+    Clustering, KMeansConfig, KMeansError, KMeansMethod, KMeansSeeding, KMeansStop, kmeans,
+    kmeans_from,
+};
+pub use obstacle::{FirstContact, ObstacleConfig, ObstacleError, ObstacleSet};
+pub use point::PointLike;
+pub use space::Space;

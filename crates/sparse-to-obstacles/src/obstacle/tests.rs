@@ -1,0 +1,187 @@
+use super::*;
+use crate::hull::HullKind;
+use crate::vector::{add, distance, lerp};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+fn rng(seed: u64) -> Pcg64 {
+    Pcg64::seed_from_u64(seed)
+}
+
+fn random_point(rng: &mut Pcg64) -> Vec3 {
+    [10.0, 10.0, 3.0].map(|size| size * rng.random::<f64>())
+}
+
+fn blobs(count: usize, rng: &mut Pcg64) -> Vec<Vec3> {
+    (0..count)
+        .flat_map(|_| {
+            let centre = random_point(rng);
+            let blob: Vec<Vec3> = (0..12)
+                .map(|_| add(centre, [0, 1, 2].map(|_| 0.5 * rng.random::<f64>())))
+                .collect();
+            blob
+        })
+        .collect()
+}
+
+fn brute_clearance(set: &ObstacleSet, a: Vec3, b: Vec3) -> f64 {
+    let distances = set.obstacles().iter();
+    distances
+        .map(|hull| hull::separation(&hull.vertices, a, b, f64::NAN).upper)
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn queries_agree_with_brute_force_and_with_each_other() {
+    let mut rng = rng(1);
+    let points = blobs(80, &mut rng);
+    let set =
+        ObstacleSet::from_points(&points, &ObstacleConfig::with_clusters(80), &mut rng).unwrap();
+    let (mut free, mut blocked) = (0, 0);
+    for _ in 0..400 {
+        let (a, b) = (random_point(&mut rng), random_point(&mut rng));
+        let b = lerp(a, b, 0.3);
+        let clearance = set.clearance(a, b);
+        assert!((clearance - brute_clearance(&set, a, b)).abs() < 1e-9);
+        for radius in [0.0, 0.1, 0.3] {
+            let is_free = set.motion_is_free(a, b, radius);
+            if (clearance - radius).abs() > 1e-9 {
+                assert_eq!(is_free, clearance > radius);
+            }
+            match set.first_contact(a, b, radius) {
+                None => free += 1,
+                Some(contact) => {
+                    blocked += 1;
+                    let gap = set.point_clearance(contact.centre);
+                    assert!(contact.at == 0.0 || (gap - radius).abs() < 1e-6);
+                    assert!(gap <= radius + 1e-6);
+                    let before = lerp(a, b, (contact.at - 1e-4).max(0.0));
+                    assert!(contact.at == 0.0 || set.motion_is_free(a, before, radius * 0.999));
+                }
+            }
+            assert_eq!(is_free, set.first_contact(a, b, radius).is_none());
+        }
+    }
+    assert!(free > 100 && blocked > 100);
+}
+
+#[test]
+fn free_motions_touch_nothing_at_any_sampled_place() {
+    let mut rng = rng(2);
+    let points = blobs(40, &mut rng);
+    let set =
+        ObstacleSet::from_points(&points, &ObstacleConfig::with_clusters(40), &mut rng).unwrap();
+    for _ in 0..300 {
+        let (a, b) = (random_point(&mut rng), random_point(&mut rng));
+        let sampled = (0..=200).map(|i| set.point_clearance(lerp(a, b, f64::from(i) / 200.0)));
+        let nearest = sampled.fold(f64::INFINITY, f64::min);
+        if set.motion_is_free(a, b, 0.2) {
+            assert!(nearest > 0.2);
+        } else {
+            assert!(nearest < 0.2 + 0.5 * distance(a, b) / 200.0 + 1e-9);
+        }
+    }
+}
+
+#[test]
+fn every_point_is_inside_its_obstacle() {
+    let mut rng = rng(3);
+    let points: Vec<Vec3> = (0..600).map(|_| random_point(&mut rng)).collect();
+    let set =
+        ObstacleSet::from_points(&points, &ObstacleConfig::with_clusters(70), &mut rng).unwrap();
+    let mut seen = vec![0; points.len()];
+    for hull in set.obstacles() {
+        for &index in &hull.point_indices {
+            seen[index] += 1;
+            let point = points[index];
+            let gap = hull::separation(&hull.vertices, point, point, f64::NAN).upper;
+            assert!(gap < 1e-8);
+        }
+    }
+    assert!(seen.iter().all(|&count| count == 1));
+}
+
+#[test]
+fn inputs_of_every_rank_are_obstacles() {
+    let config = ObstacleConfig::with_clusters(1);
+    let build = |points: &[Vec3]| ObstacleSet::from_points(points, &config, &mut rng(1)).unwrap();
+    let inputs: [(&[Vec3], HullKind); 3] = [
+        (&[[1.0, 0.0, 0.0]], HullKind::Point),
+        (&[[1.0, -1.0, 0.0], [1.0, 1.0, 0.0]], HullKind::Segment),
+        (
+            &[[1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 0.0, 1.0]],
+            HullKind::Polygon,
+        ),
+    ];
+    for (points, kind) in inputs {
+        let set = build(points);
+        assert_eq!((set.len(), set.degenerate_count()), (1, 1));
+        assert_eq!(set.obstacles()[0].kind, kind);
+        assert!(!set.motion_is_free([0.0; 3], [2.0, 0.0, 0.0], 0.0));
+        assert!(set.motion_is_free([0.0, 0.0, 5.0], [2.0, 0.0, 5.0], 0.5));
+        let contact = set.first_contact([0.0; 3], [2.0, 0.0, 0.0], 0.25).unwrap();
+        assert!((contact.at - 0.375).abs() < 1e-9, "{kind:?} {contact:?}");
+        assert_eq!(set.point_clearance([0.0; 3]), 1.0);
+    }
+}
+
+#[test]
+fn an_empty_set_is_free_everywhere() {
+    let none: [Vec3; 0] = [];
+    let set = ObstacleSet::from_points(&none, &ObstacleConfig::default(), &mut rng(1)).unwrap();
+    assert!(set.is_empty());
+    assert!(set.motion_is_free([0.0; 3], [1.0; 3], 0.3));
+    assert_eq!(set.clearance([0.0; 3], [1.0; 3]), f64::INFINITY);
+    assert_eq!(set.first_contact([0.0; 3], [1.0; 3], 0.3), None);
+}
+
+#[test]
+fn input_that_is_not_finite_is_never_free() {
+    let set = ObstacleSet::from_points(&[[5.0; 3]], &ObstacleConfig::with_clusters(1), &mut rng(1))
+        .unwrap();
+    assert!(!set.motion_is_free([f64::NAN, 0.0, 0.0], [0.0; 3], 0.1));
+    assert!(!set.motion_is_free([0.0; 3], [0.0; 3], f64::NAN));
+    assert!(!set.motion_is_free([0.0; 3], [0.0; 3], -0.1));
+    assert!(set.clearance([0.0; 3], [f64::INFINITY, 0.0, 0.0]).is_nan());
+    let nan = [[0.0; 3], [f64::NAN; 3]];
+    let refused = ObstacleSet::from_points(&nan, &ObstacleConfig::default(), &mut rng(1));
+    assert!(matches!(
+        refused,
+        Err(ObstacleError::KMeans(crate::KMeansError::NotFinite {
+            index: 1
+        }))
+    ));
+}
+
+#[test]
+fn exports_count_what_they_hold() {
+    let points: Vec<Vec3> = (0..40)
+        .map(|i| [i % 4, i / 4 % 4, i / 16].map(f64::from))
+        .collect();
+    let set =
+        ObstacleSet::from_points(&points, &ObstacleConfig::with_clusters(3), &mut rng(1)).unwrap();
+    let (mut obj, mut ply) = (Vec::new(), Vec::new());
+    set.write_obj(&mut obj).unwrap();
+    set.write_ply(&mut ply).unwrap();
+    let (obj, ply) = (
+        String::from_utf8(obj).unwrap(),
+        String::from_utf8(ply).unwrap(),
+    );
+    let vertices: usize = set.obstacles().iter().map(|hull| hull.vertices.len()).sum();
+    let faces: usize = set
+        .obstacles()
+        .iter()
+        .map(|hull| hull.triangles.len())
+        .sum();
+    assert_eq!(
+        obj.lines().filter(|line| line.starts_with("v ")).count(),
+        vertices
+    );
+    assert_eq!(
+        obj.lines().filter(|line| line.starts_with("f ")).count(),
+        faces
+    );
+    assert!(ply.contains(&format!("element vertex {vertices}\n")));
+    let header = ply.lines().take_while(|&line| line != "end_header").count() + 1;
+    assert_eq!(ply.lines().count(), header + vertices + faces);
+}
