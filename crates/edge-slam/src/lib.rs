@@ -4,6 +4,13 @@
     reason = "a negated comparison refuses NaN as well"
 )]
 
+pub mod camera;
+pub mod depth;
 pub mod evaluation;
+pub mod feature;
+pub mod image;
+#[cfg(feature = "image-files")]
+pub mod sequence;
+mod simd;
 
 pub use nalgebra;

@@ -1,14 +1,16 @@
 //! The evaluator against figures that evo 1.38.1 gives for published trajectories.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test file")]
+
 use std::path::PathBuf;
 
 use edge_slam::evaluation::{
-    Alignment, ApeConfig, RpeConfig, RpeInterval, StampedPose, absolute_pose_error,
+    Alignment, ApeConfig, RpeConfig, RpeInterval, TimedPose, absolute_pose_error,
     relative_pose_error,
 };
-use edge_slam::nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use slam_bridge::read_tum;
 
-fn load(name: &str) -> Option<Vec<StampedPose>> {
+fn load(name: &str) -> Option<Vec<TimedPose>> {
     let folder = std::env::var("EXPLORER_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
     let path: PathBuf = [folder.as_str(), "data", "trajectories", name]
@@ -18,22 +20,7 @@ fn load(name: &str) -> Option<Vec<StampedPose>> {
         println!("skipped: {} is not there", path.display());
         return None;
     };
-    let rows = text
-        .lines()
-        .filter(|line| !line.starts_with('#') && !line.trim().is_empty());
-    Some(rows.map(sample).collect())
-}
-
-fn sample(line: &str) -> StampedPose {
-    let v: Vec<f64> = line
-        .split_whitespace()
-        .map(|word| word.parse().unwrap())
-        .collect();
-    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(v[7], v[4], v[5], v[6]));
-    StampedPose::new(
-        v[0],
-        Isometry3::from_parts(Translation3::new(v[1], v[2], v[3]), rotation),
-    )
+    Some(read_tum(text.as_bytes()).unwrap())
 }
 
 struct Expected {

@@ -10,7 +10,7 @@
 use nalgebra::Matrix4;
 
 use super::{
-    Alignment, ErrorStatistics, EvaluationError, Similarity, StampedPose, align_points, associate,
+    Alignment, ErrorStatistics, EvaluationError, Similarity, TimedPose, align_points, associate,
 };
 
 /// How the absolute error is measured.
@@ -54,17 +54,17 @@ pub struct AbsolutePoseError {
 /// [`EvaluationError`]: no pair, values that are not finite, or an alignment that is not unique.
 ///
 /// ```
-/// use edge_slam::evaluation::{ApeConfig, StampedPose, absolute_pose_error};
-/// use edge_slam::nalgebra::{Isometry3, Vector3};
+/// use edge_slam::evaluation::{ApeConfig, TimedPose, absolute_pose_error};
+/// use edge_slam::nalgebra::Isometry3;
 /// let truth: Vec<_> = (0..9)
 ///     .map(|i| {
 ///         let s = f64::from(i) * 0.3;
-///         StampedPose::new(s, Isometry3::new(Vector3::new(s.sin(), s.cos(), s), Vector3::zeros()))
+///         TimedPose { time: s, pose: Isometry3::translation(s.sin(), s.cos(), s) }
 ///     })
 ///     .collect();
 /// let mut half = truth.clone();
 /// for sample in &mut half {
-///     sample.world_from_camera.translation.vector *= 0.5;
+///     sample.pose.translation.vector *= 0.5;
 /// }
 /// let ape = absolute_pose_error(&half, &truth, &ApeConfig::default())?;
 /// assert!(ape.translation.rmse < 1e-9);
@@ -72,23 +72,23 @@ pub struct AbsolutePoseError {
 /// # Ok::<(), edge_slam::evaluation::EvaluationError>(())
 /// ```
 pub fn absolute_pose_error(
-    estimate: &[StampedPose],
-    reference: &[StampedPose],
+    estimate: &[TimedPose],
+    reference: &[TimedPose],
     config: &ApeConfig,
 ) -> Result<AbsolutePoseError, EvaluationError> {
     let pairs = associate(estimate, reference, config.max_difference)?;
-    let source: Vec<_> = pairs.iter().map(|&(i, _)| estimate[i].position()).collect();
+    let source: Vec<_> = pairs.iter().map(|&(i, _)| position(&estimate[i])).collect();
     let target: Vec<_> = pairs
         .iter()
-        .map(|&(_, j)| reference[j].position())
+        .map(|&(_, j)| position(&reference[j]))
         .collect();
     let alignment = align_points(&source, &target, config.alignment)?;
     let mut errors = Vec::with_capacity(pairs.len());
     let mut angles = Vec::with_capacity(pairs.len());
     let mut norms = Vec::with_capacity(pairs.len());
     for &(i, j) in &pairs {
-        let moved = alignment.apply_to_pose(&estimate[i].world_from_camera);
-        let error = reference[j].world_from_camera.inv_mul(&moved);
+        let moved = alignment.apply_to_pose(&estimate[i].pose);
+        let error = reference[j].pose.inv_mul(&moved);
         errors.push(error.translation.vector.norm());
         angles.push(error.rotation.angle());
         norms.push((error.to_homogeneous() - Matrix4::identity()).norm());
@@ -105,4 +105,8 @@ pub fn absolute_pose_error(
         pairs,
         errors,
     })
+}
+
+fn position(sample: &TimedPose) -> [f64; 3] {
+    sample.pose.translation.vector.into()
 }

@@ -1,7 +1,6 @@
 //! Which samples of two trajectories belong together: nearest time stamps, as `evo` pairs them.
 
-use super::trajectory::check_finite;
-use super::{EvaluationError, StampedPose};
+use super::{EvaluationError, TimedPose};
 
 /// Pairs `(index into estimate, index into reference)` whose stamps differ by at most `max_difference` seconds.
 ///
@@ -14,16 +13,16 @@ use super::{EvaluationError, StampedPose};
 /// [`EvaluationError::NonFinite`], and [`EvaluationError::Parameter`] when `max_difference` is negative or NaN.
 ///
 /// ```
-/// use edge_slam::evaluation::{StampedPose, associate};
+/// use edge_slam::evaluation::{TimedPose, associate};
 /// use edge_slam::nalgebra::Isometry3;
-/// let at = |time| StampedPose::new(time, Isometry3::identity());
+/// let at = |time| TimedPose { time, pose: Isometry3::identity() };
 /// let pairs = associate(&[at(1.004), at(9.0)], &[at(0.99), at(1.0), at(1.02)], 0.01)?;
 /// assert_eq!(pairs, [(0, 1)]);
 /// # Ok::<(), edge_slam::evaluation::EvaluationError>(())
 /// ```
 pub fn associate(
-    estimate: &[StampedPose],
-    reference: &[StampedPose],
+    estimate: &[TimedPose],
+    reference: &[TimedPose],
     max_difference: f64,
 ) -> Result<Vec<(usize, usize)>, EvaluationError> {
     check_finite(estimate)?;
@@ -58,13 +57,39 @@ pub fn associate(
     Ok(pairs)
 }
 
-fn by_time(trajectory: &[StampedPose]) -> Vec<usize> {
+/// Coordinates beyond this would overflow when squared and summed.
+const LARGEST: f64 = 1e100;
+
+/// Errs at the first sample that holds NaN, infinity or an absurd coordinate.
+fn check_finite(trajectory: &[TimedPose]) -> Result<(), EvaluationError> {
+    let usable = |sample: &TimedPose| {
+        sample.time.is_finite()
+            && sample
+                .pose
+                .translation
+                .vector
+                .iter()
+                .all(|value| value.abs() < LARGEST)
+            && sample
+                .pose
+                .rotation
+                .coords
+                .iter()
+                .all(|value| value.is_finite())
+    };
+    match trajectory.iter().position(|sample| !usable(sample)) {
+        Some(index) => Err(EvaluationError::NonFinite { index }),
+        None => Ok(()),
+    }
+}
+
+fn by_time(trajectory: &[TimedPose]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..trajectory.len()).collect();
     order.sort_by(|&a, &b| trajectory[a].time.total_cmp(&trajectory[b].time));
     order
 }
 
-fn nearest(trajectory: &[StampedPose], order: &[usize], time: f64) -> Option<usize> {
+fn nearest(trajectory: &[TimedPose], order: &[usize], time: f64) -> Option<usize> {
     let after = order.partition_point(|&index| trajectory[index].time < time);
     let later = order.get(after).copied();
     let earlier = after.checked_sub(1).and_then(|before| {
@@ -96,10 +121,13 @@ mod tests {
     use nalgebra::Isometry3;
     use proptest::prelude::*;
 
-    fn stamps(times: &[f64]) -> Vec<StampedPose> {
+    fn stamps(times: &[f64]) -> Vec<TimedPose> {
         times
             .iter()
-            .map(|&time| StampedPose::new(time, Isometry3::identity()))
+            .map(|&time| TimedPose {
+                time,
+                pose: Isometry3::identity(),
+            })
             .collect()
     }
 

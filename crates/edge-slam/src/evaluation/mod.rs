@@ -10,7 +10,6 @@ mod error;
 mod map_accuracy;
 mod rpe;
 mod statistics;
-mod trajectory;
 
 pub use align::{Alignment, Similarity, align_points};
 pub use ape::{AbsolutePoseError, ApeConfig, absolute_pose_error};
@@ -18,5 +17,5 @@ pub use associate::associate;
 pub use error::EvaluationError;
 pub use map_accuracy::{MapAccuracy, map_accuracy};
 pub use rpe::{RelativePoseError, RpeConfig, RpeInterval, relative_pose_error};
+pub use slam_bridge::TimedPose;
 pub use statistics::ErrorStatistics;
-pub use trajectory::StampedPose;

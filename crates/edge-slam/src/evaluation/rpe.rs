@@ -4,7 +4,7 @@
 //! Eᵢ = (Qᵢ⁻¹ Qⱼ)⁻¹ (Pᵢ⁻¹ Pⱼ)    j = i + Δ
 //! ```
 
-use super::{ErrorStatistics, EvaluationError, StampedPose, associate};
+use super::{ErrorStatistics, EvaluationError, TimedPose, associate};
 
 /// How far apart the two poses of a pair are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,8 +56,8 @@ pub struct RelativePoseError {
 /// # Errors
 /// [`EvaluationError`]: no pair, values that are not finite, or an interval that is not positive.
 pub fn relative_pose_error(
-    estimate: &[StampedPose],
-    reference: &[StampedPose],
+    estimate: &[TimedPose],
+    reference: &[TimedPose],
     config: &RpeConfig,
 ) -> Result<RelativePoseError, EvaluationError> {
     check(config)?;
@@ -73,12 +73,8 @@ pub fn relative_pose_error(
     let mut angles = Vec::with_capacity(steps.len());
     for &(from, to) in &steps {
         let (p, q) = (matched[from], matched[to]);
-        let truth = reference[p.1]
-            .world_from_camera
-            .inv_mul(&reference[q.1].world_from_camera);
-        let mut step = estimate[p.0]
-            .world_from_camera
-            .inv_mul(&estimate[q.0].world_from_camera);
+        let truth = reference[p.1].pose.inv_mul(&reference[q.1].pose);
+        let mut step = estimate[p.0].pose.inv_mul(&estimate[q.0].pose);
         step.translation.vector *= config.scale;
         let error = truth.inv_mul(&step);
         lengths.push(error.translation.vector.norm());
@@ -154,12 +150,15 @@ mod tests {
     use super::*;
     use nalgebra::{Isometry3, Vector3};
 
-    fn straight(n: u32, speed: f64) -> Vec<StampedPose> {
+    fn straight(n: u32, speed: f64) -> Vec<TimedPose> {
         (0..n)
             .map(|i| {
                 let t = f64::from(i) * 0.1;
                 let shift = Vector3::new(speed * t, 0.0, 0.0);
-                StampedPose::new(t, Isometry3::new(shift, Vector3::new(0.0, 0.0, 0.2 * t)))
+                TimedPose {
+                    time: t,
+                    pose: Isometry3::new(shift, Vector3::new(0.0, 0.0, 0.2 * t)),
+                }
             })
             .collect()
     }
@@ -181,11 +180,11 @@ mod tests {
         };
         let mut slow = straight(50, 1.0);
         for sample in &mut slow {
-            sample.world_from_camera.rotation = nalgebra::UnitQuaternion::identity();
+            sample.pose.rotation = nalgebra::UnitQuaternion::identity();
         }
         let mut fast = slow.clone();
         for sample in &mut fast {
-            sample.world_from_camera.translation.vector *= 1.1;
+            sample.pose.translation.vector *= 1.1;
         }
         let rpe = relative_pose_error(&fast, &slow, &config).unwrap();
         assert_eq!(rpe.pairs, 40);

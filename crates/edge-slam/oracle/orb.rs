@@ -1,0 +1,46 @@
+//! Writes the ORB features of images as text, for the comparison in `orb.py`.
+//!
+//! Usage: orb COUNT IMAGE... ; prints per image a line "features N microseconds T" and N lines
+//! "x y octave w0 w1 w2 w3". The time is the process' own for one extraction, the best of five.
+#![allow(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    reason = "a measuring program"
+)]
+
+use std::error::Error;
+use std::time::Instant;
+
+use edge_slam::feature::{OrbConfig, OrbExtractor};
+use edge_slam::sequence::decode_gray;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let features = arguments.next().ok_or("COUNT is missing")?.parse()?;
+    let extractor = OrbExtractor::new(OrbConfig {
+        features,
+        ..Default::default()
+    })?;
+    for path in arguments {
+        let image = decode_gray(&std::fs::read(path)?)?;
+        let mut best = f64::MAX;
+        let mut found = extractor.extract(&image.view());
+        for _ in 0..5 {
+            let start = Instant::now();
+            found = extractor.extract(&image.view());
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+        println!(
+            "features {} microseconds {:.0}",
+            found.keypoints.len(),
+            best * 1e6
+        );
+        for (k, d) in found.keypoints.iter().zip(&found.descriptors) {
+            println!(
+                "{} {} {} {} {} {} {}",
+                k.x, k.y, k.octave, d.0[0], d.0[1], d.0[2], d.0[3]
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,16 @@
+//! Point features: FAST corners, orientation, rotated BRIEF, ORB over a pyramid, and matching.
+
+mod brief;
+mod config;
+mod fast;
+mod matching;
+mod orb;
+mod orientation;
+mod spread;
+
+pub use brief::Descriptor;
+pub use config::{OrbConfig, OrbConfigError};
+pub use fast::{Corner, fast_corners};
+pub use matching::{GuidedConfig, Match, MatchConfig, Prediction, match_descriptors, match_guided};
+pub use orb::{Features, Keypoint, OrbExtractor};
+pub use spread::spread_corners;

@@ -1,0 +1,5 @@
+//! Recorded image sequences: decoding of PNG and JPEG, TUM folders, plain folders (feature `image-files`).
+
+mod decode;
+
+pub use decode::{DecodeError, decode_depth, decode_gray};
