@@ -80,4 +80,14 @@ impl Camera {
         let half_y = 0.5 * self.height / self.fy;
         point.z > 0.0 && point.x.abs() <= half_x * point.z && point.y.abs() <= half_y * point.z
     }
+
+    /// Whether any point of a ball in camera coordinates may fall into the picture.
+    pub(crate) fn may_show(&self, center: Vector3<f64>, radius: f64) -> bool {
+        let half_x = 0.5 * self.width / self.fx;
+        let half_y = 0.5 * self.height / self.fy;
+        let inside = |half: f64, side: f64| {
+            half * center.z - side.abs() > -radius * (1.0 + half * half).sqrt()
+        };
+        center.z > -radius && inside(half_x, center.x) && inside(half_y, center.y)
+    }
 }

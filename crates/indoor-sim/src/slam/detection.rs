@@ -20,8 +20,8 @@ const FARTHEST: f64 = 10.0;
 /// Least distance, metres: nearer, the picture is out of focus and moves too fast.
 const NEAREST: f64 = 0.3;
 
-/// The detections of a picture, ascending by landmark. Cost: one test per landmark and one ray cast per landmark that
-/// passes it.
+/// The detections of a picture, ascending by landmark. Cost: one test per group of landmarks, one per landmark of
+/// the groups that pass, and one ray cast per landmark that passes.
 pub(crate) fn detect(
     world: &World,
     camera: &Camera,
@@ -31,19 +31,28 @@ pub(crate) fn detect(
     let center = world_from_camera.translation.vector;
     let camera_from_world = world_from_camera.inverse();
     let mut seen: Vec<(f64, Detection)> = Vec::new();
-    for (number, landmark) in world.landmarks().iter().enumerate() {
-        let ray = Vector3::from(landmark.position) - center;
-        let range = ray.norm();
-        let resolved = range >= landmark.near.max(NEAREST) && range <= landmark.far.min(FARTHEST);
-        if !resolved || !camera.contains(camera_from_world.rotation * ray) {
+    for group in world.groups() {
+        if !group.may_be_seen(camera, &camera_from_world) {
             continue;
         }
-        if world.sees_landmark(center.into(), landmark) {
-            let detection = Detection {
-                landmark: number as u32,
-                range,
-            };
-            seen.push((landmark.strength, detection));
+        for number in group.from..group.to {
+            let landmark = &world.landmarks()[number as usize];
+            let ray = Vector3::from(landmark.position) - center;
+            let range = ray.norm();
+            let resolved =
+                range >= landmark.near.max(NEAREST) && range <= landmark.far.min(FARTHEST);
+            if resolved
+                && camera.contains(camera_from_world.rotation * ray)
+                && world.sees_landmark(center.into(), landmark)
+            {
+                seen.push((
+                    landmark.strength,
+                    Detection {
+                        landmark: number,
+                        range,
+                    },
+                ));
+            }
         }
     }
     if seen.len() > budget {

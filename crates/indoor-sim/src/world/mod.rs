@@ -5,6 +5,7 @@ mod error;
 mod floor_plan;
 mod generator;
 mod landmark;
+mod landmark_index;
 mod presets;
 mod reach;
 mod solid;
@@ -25,6 +26,7 @@ pub use texture::TextureConfig;
 pub(crate) use coverage::FLYING_HEIGHT;
 
 use crate::random::{Purpose, stream};
+use landmark_index::Group;
 use solid_index::SolidIndex;
 
 /// A furnished storey with its landmarks: the truth that the simulator flies in. Immutable once built.
@@ -33,6 +35,7 @@ pub struct World {
     plan: FloorPlan,
     solids: Vec<Solid>,
     landmarks: Vec<Landmark>,
+    groups: Vec<Group>,
     index: SolidIndex,
 }
 
@@ -79,7 +82,8 @@ impl World {
     ) -> Result<Self, WorldError> {
         let mut world = Self::untextured(plan)?;
         let mut rng = stream(seed, Purpose::Texture);
-        world.landmarks = texture::paint(&world.plan, &world.solids, texture, &mut rng);
+        let painted = texture::paint(&world.plan, &world.solids, texture, &mut rng);
+        (world.landmarks, world.groups) = landmark_index::group(painted);
         Ok(world)
     }
 
@@ -92,6 +96,7 @@ impl World {
             plan,
             solids,
             landmarks: Vec::new(),
+            groups: Vec::new(),
             index,
         };
         let [x, y] = world.plan.start.position;
@@ -126,6 +131,11 @@ impl World {
     #[must_use]
     pub fn landmarks(&self) -> &[Landmark] {
         &self.landmarks
+    }
+
+    /// The landmarks in groups that can be dismissed together.
+    pub(crate) fn groups(&self) -> &[Group] {
+        &self.groups
     }
 
     /// The rooms.

@@ -30,12 +30,12 @@ impl Default for TextureConfig {
     fn default() -> Self {
         Self {
             blank_share: 0.4,
-            background: 30.0,
-            patch: 420.0,
-            furniture: 170.0,
-            floor: 16.0,
-            ceiling: 3.0,
-            edge: 25.0,
+            background: 60.0,
+            patch: 900.0,
+            furniture: 380.0,
+            floor: 25.0,
+            ceiling: 5.0,
+            edge: 45.0,
         }
     }
 }
@@ -144,11 +144,14 @@ impl<R: Rng> Painter<'_, R> {
         let vertical = 1 - horizontal;
         let length = face.high[horizontal] - face.low[horizontal];
         let panels = (length / 1.3).ceil().max(1.0);
+        let mut blank = false;
         for number in 0..panels as usize {
             let (mut low, mut high) = (face.low, face.high);
             low[horizontal] = face.low[horizontal] + length * number as f64 / panels;
             high[horizontal] = face.low[horizontal] + length * (number + 1) as f64 / panels;
-            let blank = self.rng.random::<f64>() < self.config.blank_share;
+            // Blank panels seldom stand side by side: people hang something on an empty wall.
+            let chance = if blank { 0.5 } else { 1.25 } * self.config.blank_share;
+            blank = self.rng.random::<f64>() < chance;
             let vivid = uniform(self.rng, 0.4, 1.6);
             let has_patch = self.rng.random::<f64>() < 0.85;
             let panel = face.part(low, high);
