@@ -13,9 +13,9 @@ pub use bounds::{Bounds, BoundsError};
 pub use euclid::PointLike;
 pub use goals::Goals;
 pub use motion::MotionValidator;
-pub use path::{Path, PathError};
+pub use path::{ClearanceProfile, ClearanceSample, Leg, Path, PathError};
 pub use planner::{
     ConfigError, Plan, PlanError, Progress, Rrt, RrtConfig, RrtConnect, RrtStar, RrtStarConfig,
     Stop, rrt, rrt_connect, rrt_star,
 };
-pub use refine::Refined;
+pub use refine::{RefineError, RefineStop, Refined};

@@ -17,6 +17,13 @@ pub struct Path<const D: usize> {
     points: Vec<[f64; D]>,
 }
 
+/// A point of a path and the segment that it lies on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<const D: usize> {
+    pub(crate) segment: usize,
+    pub(crate) point: [f64; D],
+}
+
 /// Why a list of points, or a request about a path, is refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -124,15 +131,23 @@ impl<const D: usize> Path<D> {
 
     /// The point `along` the path from its start; clamped to the two ends, and the start for a NaN.
     pub fn point_at(&self, along: f64) -> [f64; D] {
+        self.place_at(along).point
+    }
+
+    pub(crate) fn place_at(&self, along: f64) -> Place<D> {
         let mut left = along.max(0.0);
-        for (a, b) in self.segments() {
+        for (segment, (a, b)) in self.segments().enumerate() {
             let length = distance(a, b);
             if left < length {
-                return between(a, b, left / length);
+                let point = between(a, b, left / length);
+                return Place { segment, point };
             }
             left -= length;
         }
-        self.end()
+        Place {
+            segment: self.points.len().saturating_sub(2),
+            point: self.end(),
+        }
     }
 
     /// Index of the first segment whose motion is not free; `None` when the whole path is free. One check a segment,

@@ -6,7 +6,7 @@
 /// source of each is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RrtConfig {
-    /// Longest edge that a tree grows by, in the unit of the space; positive. Default 1, meant for metres indoors: with
+    /// Longest edge that a tree grows by, in the unit of the space; positive. Default 1.5, meant for metres indoors: with
     /// swept checks a long motion costs little more than a short one.
     pub step_length: f64,
     /// Share of the samples that are a goal (for RRT-Connect: a root of the other tree), 0 to 1. Default 0.05, the value that
@@ -24,7 +24,7 @@ pub struct RrtConfig {
 impl Default for RrtConfig {
     fn default() -> Self {
         Self {
-            step_length: 1.0,
+            step_length: 1.5,
             goal_bias: 0.05,
             max_iterations: 10_000,
             max_nodes: 10_000,
@@ -111,8 +111,8 @@ pub enum ConfigError {
 }
 
 impl RrtConfig {
-    /// Plain RRT as LaValle printed it: no straight attempt first and no goal bias but that of the default.
-    pub fn plain() -> Self {
+    /// What the paper's words say: RRT from the start, without asking for the straight motion first.
+    pub fn paper() -> Self {
         Self {
             try_straight: false,
             ..Self::default()

@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::{PlanError, Progress, RrtConfig};
+use super::{PlanError, Progress, RrtConfig, Stop};
 use crate::bounds::Bounds;
 use crate::euclid::{PointLike, distance, first_non_finite};
 use crate::goals::Goals;
@@ -87,13 +87,37 @@ impl<'a, const D: usize, M: MotionValidator<D>> Query<'a, D, M> {
         }
     }
 
-    pub(crate) fn progress(&self, nodes: usize, length: Option<f64>) -> Progress {
-        Progress {
+    /// Whether a call that begins now asks for the straight motion first.
+    pub(crate) fn begins_straight(&self) -> bool {
+        self.iterations == 0 && self.config.max_iterations > 0 && self.config.try_straight
+    }
+
+    /// Takes one iteration from those `left`, or says why there is none.
+    pub(crate) fn spend(
+        &mut self,
+        left: &mut usize,
+        nodes: usize,
+        length: Option<f64>,
+        stop: &mut impl FnMut(&Progress) -> bool,
+    ) -> Option<Stop> {
+        if *left == 0 {
+            return Some(Stop::Iterations);
+        }
+        if nodes >= self.config.max_nodes {
+            return Some(Stop::Nodes);
+        }
+        let progress = Progress {
             iterations: self.iterations,
             nodes,
             checks: self.checks,
             length,
+        };
+        if stop(&progress) {
+            return Some(Stop::Asked);
         }
+        *left -= 1;
+        self.iterations += 1;
+        None
     }
 }
 

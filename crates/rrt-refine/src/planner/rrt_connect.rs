@@ -98,26 +98,18 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtConnect<'a, D, M> {
         rng: &mut impl Rng,
         mut stop: impl FnMut(&Progress) -> bool,
     ) -> Plan<D> {
-        let config = self.query.config;
-        if self.query.iterations == 0 && config.max_iterations > 0 && config.try_straight {
+        if self.query.begins_straight() {
             self.try_straight();
         }
-        let mut left = config.max_iterations;
+        let mut left = self.query.config.max_iterations;
         let reason = loop {
             if let Some((_, _, how)) = self.found {
                 break how;
             }
-            if left == 0 {
-                break Stop::Iterations;
+            let nodes = self.nodes();
+            if let Some(reason) = self.query.spend(&mut left, nodes, None, &mut stop) {
+                break reason;
             }
-            if self.nodes() >= config.max_nodes {
-                break Stop::Nodes;
-            }
-            if stop(&self.query.progress(self.nodes(), None)) {
-                break Stop::Asked;
-            }
-            left -= 1;
-            self.query.iterations += 1;
             self.grow(rng);
             self.start_grows = !self.start_grows;
         };

@@ -104,27 +104,19 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
         rng: &mut impl Rng,
         mut stop: impl FnMut(&Progress) -> bool,
     ) -> Plan<D> {
-        let config = self.config.rrt;
-        if self.query.iterations == 0 && config.max_iterations > 0 && config.try_straight {
+        if self.query.begins_straight() {
             self.try_straight();
         }
-        let mut left = config.max_iterations;
+        let mut left = self.query.config.max_iterations;
         let reason = loop {
             if self.straight {
                 break Stop::Straight;
             }
-            if left == 0 {
-                break Stop::Iterations;
-            }
-            if self.tree.len() >= config.max_nodes {
-                break Stop::Nodes;
-            }
             let best = self.best().map(|(_, length)| length);
-            if stop(&self.query.progress(self.tree.len(), best)) {
-                break Stop::Asked;
+            let nodes = self.tree.len();
+            if let Some(reason) = self.query.spend(&mut left, nodes, best, &mut stop) {
+                break reason;
             }
-            left -= 1;
-            self.query.iterations += 1;
             self.grow(rng);
         };
         self.plan(reason)

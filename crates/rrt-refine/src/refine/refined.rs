@@ -11,6 +11,18 @@ pub struct Refined<const D: usize> {
     pub checks: usize,
     /// Length of the path that was given.
     pub length_before: f64,
+    /// Why the refiner ended.
+    pub stop: RefineStop,
+}
+
+/// Why a refiner ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RefineStop {
+    /// The same refiner would change nothing more.
+    Done,
+    /// The checks, rounds or attempts it was allowed are used up.
+    Budget,
 }
 
 impl<const D: usize> Refined<D> {

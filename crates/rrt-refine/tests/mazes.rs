@@ -1,0 +1,266 @@
+//! Worlds with and without a way through: what every planner answers, and why it stopped.
+
+#![allow(
+    clippy::expect_used,
+    reason = "a broken expectation must fail the test"
+)]
+
+use rand_pcg::Pcg64;
+use rrt_refine::{
+    Bounds, Goals, Plan, PlanError, Rrt, RrtConfig, RrtConnect, RrtStar, RrtStarConfig, Stop, rrt,
+    rrt_connect, rrt_star,
+};
+
+type P = [f64; 2];
+type Free<'a> = &'a dyn Fn(&P, &P) -> bool;
+
+/// Walls at x = 1, 2, … that are open at the top and at the bottom in turn; the last has a gap of the given width.
+fn serpentine(last_gap: f64) -> impl Fn(&P, &P) -> bool {
+    move |a, b| {
+        (1..=5).all(|wall| {
+            let x = f64::from(wall);
+            let crossing = (x - a[0]) / (b[0] - a[0]);
+            let y = a[1] + crossing * (b[1] - a[1]);
+            let gap = if wall == 5 { last_gap } else { 0.4 };
+            let open = if wall % 2 == 0 {
+                y < gap
+            } else {
+                y > 2.0 - gap
+            };
+            // A motion along the wall itself has a crossing that is NaN or infinite.
+            (a[0] != x && b[0] != x) && (!(0.0..=1.0).contains(&crossing) || open)
+        })
+    }
+}
+
+fn bounds() -> Bounds<2> {
+    Bounds::new([0.0, 0.0], [6.0, 2.0]).expect("a box")
+}
+
+const START: P = [0.5, 1.0];
+const GOAL: P = [5.5, 1.0];
+
+/// All four planners with the same budget.
+fn all(
+    goals: impl Into<Goals<2>>,
+    free: Free<'_>,
+    config: &RrtConfig,
+) -> [Result<Plan<2>, PlanError>; 4] {
+    let goals = goals.into();
+    let star = RrtStarConfig {
+        rrt: *config,
+        ..Default::default()
+    };
+    let informed = RrtStarConfig {
+        rrt: *config,
+        ..RrtStarConfig::informed()
+    };
+    let rng = || Pcg64::new(11, 3);
+    [
+        rrt(START, goals.clone(), &bounds(), &free, config, &mut rng()),
+        rrt_connect(START, goals.clone(), &bounds(), &free, config, &mut rng()),
+        rrt_star(START, goals.clone(), &bounds(), &free, &star, &mut rng()),
+        rrt_star(START, goals, &bounds(), &free, &informed, &mut rng()),
+    ]
+}
+
+fn short_steps() -> RrtConfig {
+    RrtConfig {
+        step_length: 0.5,
+        max_iterations: 3000,
+        ..RrtConfig::default()
+    }
+}
+
+#[test]
+fn every_planner_finds_its_way_through_a_serpentine() {
+    let free = serpentine(0.4);
+    for (k, plan) in all(GOAL, &free, &short_steps()).into_iter().enumerate() {
+        let plan = plan.expect("a fair question");
+        let path = plan.path.expect("a path");
+        assert_eq!((path.start(), path.end()), (START, GOAL));
+        assert_eq!(path.first_blocked(&free), None);
+        assert_eq!(plan.goal, Some(0));
+        let reason = if k < 2 {
+            Stop::Reached
+        } else {
+            Stop::Iterations
+        };
+        assert_eq!(plan.stop, reason);
+        assert!(plan.checks > plan.nodes / 2 && plan.nodes > 1);
+    }
+}
+
+#[test]
+fn star_planners_come_near_the_shortest_way() {
+    let free = serpentine(0.4);
+    // Around the five tips (1, 1.6), (2, 0.4), (3, 1.6), (4, 0.4), (5, 1.6).
+    let tip = |dx: f64, dy: f64| (dx * dx + dy * dy).sqrt();
+    let shortest = 2.0 * tip(0.5, 0.6) + 4.0 * tip(1.0, 1.2);
+    let [_, _, star, informed] = all(GOAL, &free, &short_steps());
+    let length =
+        |plan: Result<Plan<2>, PlanError>| plan.ok().and_then(|p| p.length()).expect("a path");
+    let (star, informed) = (length(star), length(informed));
+    for (length, share) in [(star, 1.08), (informed, 1.05)] {
+        assert!(length >= shortest - 1e-9, "{length} against {shortest}");
+        assert!(length < share * shortest, "{length} against {shortest}");
+    }
+}
+
+#[test]
+fn no_planner_finds_a_way_through_a_closed_wall() {
+    let free = serpentine(0.0);
+    for plan in all(GOAL, &free, &short_steps()) {
+        let plan = plan.expect("a fair question");
+        assert_eq!(plan.path, None);
+        assert_eq!((plan.goal, plan.length()), (None, None));
+        assert_eq!(plan.stop, Stop::Iterations);
+        assert_eq!(plan.iterations, 3000);
+    }
+}
+
+#[test]
+fn full_trees_and_closures_stop_the_search() {
+    let free = serpentine(0.0);
+    let config = RrtConfig {
+        max_nodes: 50,
+        ..short_steps()
+    };
+    for plan in all(GOAL, &free, &config) {
+        let plan = plan.expect("a fair question");
+        assert_eq!(plan.stop, Stop::Nodes);
+        assert!(plan.nodes <= 51, "{} nodes", plan.nodes);
+    }
+    let config = short_steps();
+    let rng = &mut Pcg64::new(1, 1);
+    let stop = |p: &rrt_refine::Progress| p.iterations >= 20;
+    let mut single = Rrt::new(START, GOAL, &bounds(), &free, &config).expect("fair");
+    let mut double = RrtConnect::new(START, GOAL, &bounds(), &free, &config).expect("fair");
+    let star = RrtStarConfig {
+        rrt: config,
+        ..Default::default()
+    };
+    let mut star = RrtStar::new(START, GOAL, &bounds(), &free, &star).expect("fair");
+    for plan in [
+        single.advance(rng, stop),
+        double.advance(rng, stop),
+        star.advance(rng, stop),
+    ] {
+        assert_eq!((plan.stop, plan.iterations), (Stop::Asked, 20));
+    }
+}
+
+#[test]
+fn a_search_goes_on_where_it_stopped() {
+    let free = serpentine(0.4);
+    let whole = RrtConfig {
+        max_iterations: 4000,
+        ..short_steps()
+    };
+    let part = RrtConfig {
+        max_iterations: 1,
+        ..whole
+    };
+    let mut rng = Pcg64::new(11, 3);
+    let mut search = Rrt::new(START, GOAL, &bounds(), &free, &part).expect("fair");
+    let resumed = loop {
+        let plan = search.advance(&mut rng, |_| false);
+        if plan.stop != Stop::Iterations {
+            break plan;
+        }
+    };
+    let once = rrt(
+        START,
+        GOAL,
+        &bounds(),
+        &free,
+        &whole,
+        &mut Pcg64::new(11, 3),
+    )
+    .expect("fair");
+    assert_eq!(resumed, once);
+    // Asking again changes nothing.
+    assert_eq!(search.advance(&mut rng, |_| false), once);
+}
+
+#[test]
+fn more_time_never_makes_an_anytime_path_longer() {
+    let free = serpentine(0.4);
+    for informed in [false, true] {
+        let rrt = RrtConfig {
+            max_iterations: 500,
+            ..short_steps()
+        };
+        let config = RrtStarConfig {
+            rrt,
+            informed,
+            ..Default::default()
+        };
+        let mut search = RrtStar::new(START, GOAL, &bounds(), &free, &config).expect("fair");
+        let mut rng = Pcg64::new(2, 2);
+        let mut last = f64::INFINITY;
+        for _ in 0..8 {
+            let plan = search.advance(&mut rng, |_| false);
+            let Some(path) = plan.path else { continue };
+            assert_eq!(path.first_blocked(&free), None);
+            assert!(path.length() <= last);
+            last = path.length();
+        }
+        assert!(last.is_finite());
+    }
+}
+
+#[test]
+fn of_several_goals_one_that_can_be_reached_is_taken() {
+    let free = serpentine(0.0);
+    let goals = [GOAL, [4.5, 1.9], [5.5, 0.2], [2.5, 0.1]];
+    for (k, plan) in all(&goals[..], &free, &short_steps())
+        .into_iter()
+        .enumerate()
+    {
+        let plan = plan.expect("a fair question");
+        let goal = plan.goal.expect("a goal");
+        assert!(goal == 1 || goal == 3, "goal {goal}");
+        assert_eq!(plan.path.expect("a path").end(), goals[goal]);
+        // The nearer of the two.
+        assert!(k < 2 || goal == 3);
+    }
+    // A goal inside an obstacle is left out; indices still count it.
+    let occupied = |a: &P, b: &P| b[0] < 5.9 && serpentine(0.4)(a, b);
+    for plan in all(vec![[6.0, 1.0], GOAL], &occupied, &short_steps()) {
+        assert_eq!(plan.expect("a fair question").goal, Some(1));
+    }
+}
+
+#[test]
+fn the_straight_motion_ends_the_search_at_once() {
+    let open: Free<'_> = &|_, _| true;
+    for plan in all(vec![GOAL, [0.5, 1.5]], open, &short_steps()) {
+        let plan = plan.expect("a fair question");
+        assert_eq!(
+            (plan.stop, plan.iterations, plan.goal),
+            (Stop::Straight, 0, Some(1))
+        );
+        assert_eq!(plan.path.expect("a path").points(), [START, [0.5, 1.5]]);
+    }
+    for plan in all(
+        GOAL,
+        open,
+        &RrtConfig {
+            try_straight: false,
+            ..short_steps()
+        },
+    ) {
+        assert!(plan.expect("a fair question").iterations > 0);
+    }
+}
+
+#[test]
+fn one_way_streets_are_respected() {
+    // Only motions that do not go back in x are free.
+    let forward: Free<'_> = &|a, b| b[0] >= a[0] && serpentine(2.0)(a, b);
+    for plan in all(GOAL, forward, &short_steps()) {
+        let path = plan.expect("a fair question").path.expect("a path");
+        assert!(path.segments().all(|(a, b)| b[0] >= a[0]));
+    }
+}
