@@ -6,15 +6,24 @@ extern crate alloc;
 extern crate std;
 
 pub mod command;
+pub mod emulator;
 pub mod reply;
+pub mod safety;
+pub mod session;
 pub mod state;
 pub mod telemetry;
 pub mod units;
+pub mod video;
 
 pub use command::{
     Arc, Class, Command, Credentials, Flip, Pad, Query, ReplyShape, SdkVersion, Waypoint,
 };
 pub use reply::{Refusal, Reply, ReplyKind};
+pub use safety::{Alarm, Finding, PreflightConfig, SafetyConfig, preflight};
+pub use session::{
+    ConfigError, Counters, Event, Input, Motors, Origin, Outcome, Output, RequestError, RequestId,
+    Session, SessionConfig, Sticks, Verdict,
+};
 pub use state::{StateConvention, StateError, StateLine};
 pub use telemetry::{
     Attitude, PadSighting, Reading, Source, Telemetry, TelemetryBuilder, Temperature, Velocity,
