@@ -1,6 +1,6 @@
 //! Writes the ORB features of images as text, for the comparison in `orb.py`.
 //!
-//! Usage: orb COUNT IMAGE... ; prints per image a line "features N microseconds T" and N lines
+//! Usage: orb spread|strongest COUNT IMAGE... ; prints per image a line "features N microseconds T" and N lines
 //! "x y octave w0 w1 w2 w3". The time is the process' own for one extraction, the best of five.
 #![allow(
     clippy::print_stdout,
@@ -11,14 +11,20 @@
 use std::error::Error;
 use std::time::Instant;
 
-use edge_slam::feature::{OrbConfig, OrbExtractor};
+use edge_slam::feature::{OrbConfig, OrbExtractor, Selection};
 use edge_slam::sequence::decode_gray;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
+    let selection = match arguments.next().as_deref() {
+        Some("spread") => Selection::Spread,
+        Some("strongest") => Selection::Strongest,
+        _ => return Err("spread or strongest?".into()),
+    };
     let features = arguments.next().ok_or("COUNT is missing")?.parse()?;
     let extractor = OrbExtractor::new(OrbConfig {
         features,
+        selection,
         ..Default::default()
     })?;
     for path in arguments {

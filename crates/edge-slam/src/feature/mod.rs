@@ -3,13 +3,14 @@
 mod brief;
 mod config;
 mod fast;
+mod harris;
 mod matching;
 mod orb;
 mod orientation;
 mod spread;
 
 pub use brief::Descriptor;
-pub use config::{OrbConfig, OrbConfigError};
+pub use config::{OrbConfig, OrbConfigError, Selection};
 pub use fast::{Corner, fast_corners};
 pub use matching::{GuidedConfig, Match, MatchConfig, Prediction, match_descriptors, match_guided};
 pub use orb::{Features, Keypoint, OrbExtractor};

@@ -7,8 +7,9 @@
 
 use super::brief::{PATCH_RADIUS, RotatedPattern};
 use super::fast::{Region, detect};
+use super::harris::harris;
 use super::orientation::{DISC_RADIUS, orientation};
-use super::{Corner, Descriptor, OrbConfig, OrbConfigError, spread_corners};
+use super::{Corner, Descriptor, OrbConfig, OrbConfigError, Selection, spread_corners};
 use crate::image::{GrayImage, GrayView, Pyramid, smooth_with, weights};
 use crate::simd::widest;
 
@@ -21,7 +22,7 @@ pub struct Keypoint {
     pub y: f32,
     /// Direction, radians in (−π, π], from +x towards +y.
     pub angle: f32,
-    /// FAST score, grey levels.
+    /// Harris response; only ranks the features of one image.
     pub response: f32,
     /// Pyramid level, 0 the full image. The position is good to about `scale_factor^octave` pixels.
     pub octave: u8,
@@ -57,6 +58,9 @@ pub struct OrbExtractor {
     pattern: RotatedPattern,
 }
 
+/// A corner and its Harris response.
+type Ranked = (Corner, f32);
+
 /// Distance from the image's edge within which nothing is described, pixels of the level.
 const BORDER: usize = if PATCH_RADIUS > DISC_RADIUS {
     PATCH_RADIUS
@@ -89,11 +93,10 @@ impl OrbExtractor {
         let mut line = Vec::new();
         for (level, (image, share)) in pyramid.levels().iter().zip(shares).enumerate() {
             let corners = self.corners(&image.view());
-            let chosen = spread_corners(&corners, share);
+            let chosen = self.choose(&image.view(), corners, share);
             let mut smooth = GrayImage::filled(image.width(), image.height(), 0);
             smooth_with(&image.view(), &kernel, &mut line, &mut smooth);
-            let chosen = chosen.into_iter().map(|index| corners[index]);
-            self.describe(&pyramid, level, &smooth.view(), chosen, &mut features);
+            self.describe(&pyramid, level, &smooth.view(), &chosen, &mut features);
         }
         features
     }
@@ -134,10 +137,36 @@ impl OrbExtractor {
         };
         let mut corners = Vec::new();
         detect(view, whole, self.config.threshold, &mut corners);
-        if self.config.low_threshold < self.config.threshold {
+        let spread = self.config.selection == Selection::Spread;
+        if spread && self.config.low_threshold < self.config.threshold {
             self.fill_empty_cells(view, whole, &mut corners);
         }
         corners
+    }
+
+    /// At most `share` of the corners, in reading order of their detection, with their Harris responses.
+    fn choose(&self, view: &GrayView<'_>, mut corners: Vec<Corner>, share: usize) -> Vec<Ranked> {
+        let strongest = self.config.selection == Selection::Strongest;
+        if strongest && corners.len() > 2 * share {
+            corners.sort_by_key(|corner| core::cmp::Reverse(corner.score));
+            corners.truncate(2 * share);
+            corners.sort_by_key(|corner| (corner.y, corner.x));
+        }
+        let rank = |corner: &Corner| harris(view, corner.x as usize, corner.y as usize);
+        let responses: Vec<f32> = widest(|| corners.iter().map(rank).collect());
+        let chosen = if strongest {
+            let mut order: Vec<usize> = (0..corners.len()).collect();
+            order.sort_by(|&a, &b| responses[b].total_cmp(&responses[a]));
+            order.truncate(share);
+            order.sort_unstable();
+            order
+        } else {
+            spread_corners(&corners, &responses, share)
+        };
+        chosen
+            .into_iter()
+            .map(|index| (corners[index], responses[index]))
+            .collect()
     }
 
     fn fill_empty_cells(&self, view: &GrayView<'_>, whole: Region, corners: &mut Vec<Corner>) {
@@ -174,11 +203,11 @@ impl OrbExtractor {
         pyramid: &Pyramid,
         level: usize,
         smooth: &GrayView<'_>,
-        corners: impl Iterator<Item = Corner>,
+        corners: &[Ranked],
         features: &mut Features,
     ) {
         let sharp = pyramid.levels()[level].view();
-        for corner in corners {
+        for &(corner, response) in corners {
             let (x, y) = (corner.x as usize, corner.y as usize);
             let angle = widest(|| orientation(&sharp, x, y));
             let [full_x, full_y] = pyramid.to_full(level, f64::from(corner.x), f64::from(corner.y));
@@ -186,7 +215,7 @@ impl OrbExtractor {
                 x: full_x as f32,
                 y: full_y as f32,
                 angle,
-                response: f32::from(corner.score),
+                response,
                 octave: level as u8,
             });
             features

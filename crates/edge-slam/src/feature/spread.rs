@@ -1,15 +1,17 @@
 //! Picks corners that cover the image: a quadtree whose leaves keep their best corner (as ORB-SLAM does).
 
+use core::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::Corner;
 
-/// Indices into `corners` of about `count` corners spread over the image, best of each leaf, ascending.
+/// Indices of at most `count` corners spread over the image, the best of each leaf by `responses`, ascending.
 ///
+/// A corner without a response counts as the worst.
 /// The fullest leaf is split in four until there are `count` leaves or no leaf can be split; up to three more
 /// than `count` may then exist, of which the weakest are dropped. Ties go to the lower index. Cost: O(n log n).
 #[must_use]
-pub fn spread_corners(corners: &[Corner], count: usize) -> Vec<usize> {
+pub fn spread_corners(corners: &[Corner], responses: &[f32], count: usize) -> Vec<usize> {
     if corners.len() <= count {
         return (0..corners.len()).collect();
     }
@@ -29,9 +31,9 @@ pub fn spread_corners(corners: &[Corner], count: usize) -> Vec<usize> {
     let mut chosen: Vec<usize> = leaves
         .iter()
         .chain(&finished)
-        .filter_map(|leaf| leaf.best(corners))
+        .filter_map(|leaf| leaf.best(responses))
         .collect();
-    chosen.sort_unstable_by_key(|&index| (core::cmp::Reverse(corners[index].score), index));
+    chosen.sort_unstable_by(|&a, &b| better(responses, b, a));
     chosen.truncate(count);
     chosen.sort_unstable();
     chosen
@@ -74,10 +76,18 @@ impl Leaf {
             .map(move |(members, (x, y))| Self::new(x, y, half, members))
     }
 
-    fn best(&self, corners: &[Corner]) -> Option<usize> {
-        let key = |&&index: &&usize| (corners[index].score, core::cmp::Reverse(index));
-        self.members.iter().max_by_key(key).copied()
+    fn best(&self, responses: &[f32]) -> Option<usize> {
+        self.members
+            .iter()
+            .copied()
+            .max_by(|&a, &b| better(responses, a, b))
     }
+}
+
+/// Greater response first, lower index on a tie.
+fn better(responses: &[f32], a: usize, b: usize) -> Ordering {
+    let response = |index: usize| responses.get(index).copied().unwrap_or(f32::NEG_INFINITY);
+    response(a).total_cmp(&response(b)).then(b.cmp(&a))
 }
 
 /// One square per aspect ratio: a wide image starts with several squares side by side.
@@ -125,6 +135,10 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn scores(corners: &[Corner]) -> Vec<f32> {
+        corners.iter().map(|c| f32::from(c.score)).collect()
+    }
+
     fn corners() -> impl Strategy<Value = Vec<Corner>> {
         let corner = (0u32..640, 0u32..480, 1u8..).prop_map(|(x, y, score)| Corner { x, y, score });
         prop::collection::vec(corner, 0..200)
@@ -133,7 +147,7 @@ mod tests {
     proptest! {
         #[test]
         fn gives_as_many_as_asked(corners in corners(), count in 0usize..150) {
-            let chosen = spread_corners(&corners, count);
+            let chosen = spread_corners(&corners, &scores(&corners), count);
             prop_assert!(chosen.len() <= count);
             prop_assert!(chosen.windows(2).all(|pair| pair[0] < pair[1]));
             let mut places: Vec<_> = corners.iter().map(|c| (c.x, c.y)).collect();
@@ -159,7 +173,7 @@ mod tests {
             y: 450,
             score: 1,
         });
-        assert!(spread_corners(&corners, 5).contains(&100));
+        assert!(spread_corners(&corners, &scores(&corners), 5).contains(&100));
     }
 
     #[test]
@@ -168,8 +182,8 @@ mod tests {
         let corners: Vec<Corner> = [(0, 0), (far, 0), (0, far), (far, far)]
             .map(|(x, y)| Corner { x, y, score: 1 })
             .into();
-        assert!(!spread_corners(&corners, 2).is_empty());
+        assert!(!spread_corners(&corners, &[], 2).is_empty());
         let line: Vec<Corner> = (0..50).map(|x| Corner { x, y: 5, score: 1 }).collect();
-        assert_eq!(spread_corners(&line, 10).len(), 10);
+        assert_eq!(spread_corners(&line, &[], 10).len(), 10);
     }
 }
