@@ -6,6 +6,7 @@
 
 pub mod camera;
 pub mod depth;
+pub mod edge;
 pub mod evaluation;
 pub mod feature;
 pub mod image;

@@ -1,0 +1,58 @@
+//! Writes the Canny edges of images as PGM files, for the comparison in `canny.py`.
+//!
+//! Usage: canny l1|l2 LOW HIGH OUT_FOLDER IMAGE... ; no smoothing. Prints microseconds per image, the best of five.
+#![allow(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    reason = "a measuring program"
+)]
+
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+
+use edge_slam::edge::{CannyConfig, Norm, Thresholds, canny};
+use edge_slam::sequence::decode_gray;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let mut next = || {
+        arguments
+            .next()
+            .ok_or("usage: canny l1|l2 LOW HIGH OUT_FOLDER IMAGE...")
+    };
+    let norm = if next()? == "l1" { Norm::L1 } else { Norm::L2 };
+    let thresholds = Thresholds::Fixed {
+        low: next()?.parse()?,
+        high: next()?.parse()?,
+    };
+    let folder = next()?;
+    let config = CannyConfig {
+        sigma: 0.0,
+        thresholds,
+        norm,
+    };
+    for (index, path) in arguments.enumerate() {
+        let image = decode_gray(&std::fs::read(path)?)?;
+        let mut best = f64::MAX;
+        let mut edges = canny(&image.view(), &config)?;
+        for _ in 0..5 {
+            let start = Instant::now();
+            edges = canny(&image.view(), &config)?;
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+        println!("{:.0}", best * 1e6);
+        let (width, height) = (edges.width(), edges.height());
+        let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();
+        let pixel = |i: usize| {
+            if edges.is_edge(i % width, i / width) {
+                255
+            } else {
+                0
+            }
+        };
+        bytes.extend((0..width * height).map(pixel));
+        std::fs::write(Path::new(&folder).join(format!("{index:04}.pgm")), bytes)?;
+    }
+    Ok(())
+}

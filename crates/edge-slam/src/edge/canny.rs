@@ -1,0 +1,454 @@
+//! Canny's edge detector (Canny 1986): smooth, differentiate, thin, and keep weak edges that touch strong ones.
+
+use super::gradient::{Gradient, sobel};
+use crate::image::{GrayView, gaussian_blur};
+use crate::simd::widest;
+
+/// How the strength of a gradient is measured (Sobel units: eight times grey levels per pixel).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Norm {
+    /// |gx| + |gy|, cheaper (OpenCV's default).
+    L1,
+    /// √(gx² + gy²). Default.
+    #[default]
+    L2,
+}
+
+/// The two thresholds on the gradient's strength.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Thresholds {
+    /// Sobel units, 0 <= low <= high.
+    Fixed {
+        /// Weak edges are above this.
+        low: f64,
+        /// Strong edges are above this.
+        high: f64,
+    },
+    /// high = factor times the median of the strengths that are not zero, low = ratio times high.
+    Median {
+        /// > 0; 1.33 by default.
+        factor: f64,
+        /// 0..=1; 0.4 by default.
+        ratio: f64,
+    },
+}
+
+/// Parameters of [`canny`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CannyConfig {
+    /// Standard deviation of the smoothing, pixels, >= 0; 0 for none. Default 1.4, cut to 5x5.
+    pub sigma: f64,
+    /// Thresholds. Default by the median.
+    pub thresholds: Thresholds,
+    /// Strength. Default [`Norm::L2`].
+    pub norm: Norm,
+}
+
+impl Default for CannyConfig {
+    fn default() -> Self {
+        let thresholds = Thresholds::Median {
+            factor: 1.33,
+            ratio: 0.4,
+        };
+        Self {
+            sigma: 1.4,
+            thresholds,
+            norm: Norm::L2,
+        }
+    }
+}
+
+/// A parameter of [`CannyConfig`] outside its range.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[error("{name} is {value}, but must be {range}")]
+pub struct CannyError {
+    /// Which field.
+    pub name: &'static str,
+    /// What was given.
+    pub value: f64,
+    /// What is allowed.
+    pub range: &'static str,
+}
+
+impl CannyConfig {
+    /// Errs at the first field outside its range.
+    ///
+    /// # Errors
+    /// [`CannyError`] with the field's name and range.
+    pub fn validate(&self) -> Result<(), CannyError> {
+        let check = |name, value: f64, good: bool, range| {
+            if good && value.is_finite() {
+                Ok(())
+            } else {
+                Err(CannyError { name, value, range })
+            }
+        };
+        check("sigma", self.sigma, self.sigma >= 0.0, "0 or more pixels")?;
+        match self.thresholds {
+            Thresholds::Fixed { low, high } => {
+                check("low", low, low >= 0.0, "0 or more")?;
+                check("high", high, high >= low, "at least low")
+            }
+            Thresholds::Median { factor, ratio } => {
+                check("factor", factor, factor > 0.0, "positive")?;
+                check("ratio", ratio, (0.0..=1.0).contains(&ratio), "in 0..=1")
+            }
+        }
+    }
+}
+
+/// Thin edges of an image, one pixel wide, with the gradients they came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgeMap {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// [`EDGE`] where there is one.
+    pub(super) class: Vec<u8>,
+    pub(super) gradient: Gradient,
+    pub(super) norm: Norm,
+}
+
+impl EdgeMap {
+    /// Columns.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Whether a pixel is an edge; outside the image it is not.
+    #[must_use]
+    pub fn is_edge(&self, x: usize, y: usize) -> bool {
+        x < self.width && y < self.height && self.class[y * self.width + x] == EDGE
+    }
+
+    /// How many edge pixels there are. Cost: O(pixels).
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.class.iter().filter(|&&class| class == EDGE).count()
+    }
+
+    /// Strength at a pixel, squared for [`Norm::L2`]; 0 outside.
+    pub(super) fn strength(&self, x: usize, y: usize) -> i32 {
+        if x >= self.width || y >= self.height {
+            return 0;
+        }
+        let index = y * self.width + x;
+        let (gx, gy) = (self.gradient.across[index], self.gradient.down[index]);
+        strength(i32::from(gx), i32::from(gy), self.norm)
+    }
+}
+
+const NONE: u8 = 0;
+const WEAK: u8 = 1;
+const STRONG: u8 = 2;
+pub(super) const EDGE: u8 = 3;
+
+/// tan 22.5° and tan 67.5° in 1/2^15: the borders between the four directions of thinning.
+const TAN_22: i32 = 13_573;
+const TAN_67: i32 = 79_109;
+
+/// Finds edges. Cost: O(pixels).
+///
+/// A pixel survives thinning when it is stronger than both neighbours across the edge, in the nearest of four
+/// directions; of two equal neighbours along a row or column the first stays. Flat images have no edges.
+///
+/// # Errors
+/// [`CannyError`] when a parameter is outside its range.
+///
+/// ```
+/// use edge_slam::edge::{CannyConfig, canny};
+/// use edge_slam::image::GrayImage;
+/// let pixels = (0..64 * 64).map(|i| if i % 64 < 32 { 20 } else { 220 }).collect();
+/// let edges = canny(&GrayImage::new(pixels, 64, 64)?.view(), &CannyConfig::default())?;
+/// assert_eq!(edges.count(), 64);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn canny(view: &GrayView<'_>, config: &CannyConfig) -> Result<EdgeMap, CannyError> {
+    config.validate()?;
+    let (width, height) = (view.width(), view.height());
+    let gradient = if config.sigma > 0.0 {
+        sobel(&gaussian_blur(view, config.sigma, 2).view())
+    } else {
+        sobel(view)
+    };
+    let (low, high) = limits(config, &gradient);
+    let mut class = thin(&gradient, width, height, config.norm, low, high);
+    keep_connected(&mut class, width);
+    Ok(EdgeMap {
+        width,
+        height,
+        class,
+        gradient,
+        norm: config.norm,
+    })
+}
+
+#[inline(always)]
+fn strength(gx: i32, gy: i32, norm: Norm) -> i32 {
+    match norm {
+        Norm::L1 => gx.abs() + gy.abs(),
+        Norm::L2 => gx * gx + gy * gy,
+    }
+}
+
+/// Both thresholds in the unit of [`strength`].
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "clamped; float to integer saturates"
+)]
+fn limits(config: &CannyConfig, gradient: &Gradient) -> (i32, i32) {
+    let (low, high) = match config.thresholds {
+        Thresholds::Fixed { low, high } => (low, high),
+        Thresholds::Median { factor, ratio } => {
+            let high = factor * median_strength(gradient, config.norm);
+            (ratio * high, high)
+        }
+    };
+    let unit = |value: f64| match config.norm {
+        Norm::L1 => value.floor() as i32,
+        Norm::L2 => (value * value).floor() as i32,
+    };
+    (unit(low), unit(high))
+}
+
+/// Median of the strengths that are not zero; 0 when all are. A histogram of whole Sobel units.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "strengths of bytes are below 2048"
+)]
+fn median_strength(gradient: &Gradient, norm: Norm) -> f64 {
+    let mut histogram = vec![0_usize; 2048];
+    for (&gx, &gy) in gradient.across.iter().zip(&gradient.down) {
+        let value = strength(i32::from(gx), i32::from(gy), norm);
+        let length = if norm == Norm::L2 {
+            (value as f32).sqrt()
+        } else {
+            value as f32
+        };
+        histogram[(length as usize).min(2047)] += 1;
+    }
+    histogram[0] = 0;
+    let total: usize = histogram.iter().sum();
+    let mut seen = 0;
+    let middle = histogram.iter().position(|&count| {
+        seen += count;
+        2 * seen >= total
+    });
+    middle.unwrap_or(0) as f64
+}
+
+/// The class of each pixel: nothing, weak or strong.
+fn thin(
+    gradient: &Gradient,
+    width: usize,
+    height: usize,
+    norm: Norm,
+    low: i32,
+    high: i32,
+) -> Vec<u8> {
+    let mut class = vec![NONE; width * height];
+    // Strengths of the row above, here and below, with a margin of zeros all around.
+    let mut lines = [
+        vec![0_i32; width + 2],
+        vec![0_i32; width + 2],
+        vec![0_i32; width + 2],
+    ];
+    let row = |line: &[i16], y: usize| y * width..y * width + line.len().min(width);
+    widest(|| {
+        let fill = |y: usize, line: &mut [i32]| {
+            if y >= height {
+                line.fill(0);
+                return;
+            }
+            let span = row(&gradient.across, y);
+            let (gx, gy) = (&gradient.across[span.clone()], &gradient.down[span]);
+            for ((to, &gx), &gy) in line[1..=width].iter_mut().zip(gx).zip(gy) {
+                *to = strength(i32::from(gx), i32::from(gy), norm);
+            }
+        };
+        fill(0, &mut lines[1]);
+        for y in 0..height {
+            fill(y + 1, &mut lines[2]);
+            let span = row(&gradient.across, y);
+            let sides = [&lines[0], &lines[1], &lines[2]];
+            let (gx, gy) = (&gradient.across[span.clone()], &gradient.down[span.clone()]);
+            thin_row(sides, gx, gy, [low, high], &mut class[span]);
+            lines.rotate_left(1);
+        }
+    });
+    class
+}
+
+#[inline(always)]
+fn thin_row(
+    [above, here, below]: [&Vec<i32>; 3],
+    gx: &[i16],
+    gy: &[i16],
+    [low, high]: [i32; 2],
+    class: &mut [u8],
+) {
+    let n = class.len();
+    let (gx, gy) = (&gx[..n], &gy[..n]);
+    let ([a, b, c], [d, e, f], [g, h, k]) = (thirds(above, n), thirds(here, n), thirds(below, n));
+    for i in 0..n {
+        let (x, y) = (i32::from(gx[i]), i32::from(gy[i]));
+        let (wide, tall) = (x.abs(), y.abs() << 15);
+        let centre = e[i];
+        let across = (tall < wide * TAN_22) & (centre > d[i]) & (centre >= f[i]);
+        let down = (tall > wide * TAN_67) & (centre > b[i]) & (centre >= h[i]);
+        let diagonal = (tall >= wide * TAN_22) & (tall <= wide * TAN_67);
+        let falling = (x ^ y) >= 0;
+        let (before, behind) = if falling { (a[i], k[i]) } else { (c[i], g[i]) };
+        let slanted = diagonal & (centre > before) & (centre > behind);
+        let peak = (across | down | slanted) & (centre > low);
+        class[i] = u8::from(peak) + u8::from(peak & (centre > high));
+    }
+}
+
+#[inline(always)]
+fn thirds(line: &[i32], n: usize) -> [&[i32]; 3] {
+    [&line[..n], &line[1..=n], &line[2..n + 2]]
+}
+
+/// Turns strong pixels and the weak ones connected to them (8 neighbours) into edges, clears the others.
+fn keep_connected(class: &mut [u8], width: usize) {
+    let mut stack = Vec::new();
+    for start in 0..class.len() {
+        if class[start] != STRONG {
+            continue;
+        }
+        class[start] = EDGE;
+        stack.push(start);
+        while let Some(index) = stack.pop() {
+            let (x, y) = (index % width, index / width);
+            for row in y.saturating_sub(1)..=y + 1 {
+                for column in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+                    let near = row * width + column;
+                    if near < class.len() && (class[near] == WEAK || class[near] == STRONG) {
+                        class[near] = EDGE;
+                        stack.push(near);
+                    }
+                }
+            }
+        }
+    }
+    for value in class.iter_mut() {
+        *value = if *value == EDGE { EDGE } else { NONE };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::GrayImage;
+    use proptest::prelude::*;
+
+    fn disc() -> GrayImage {
+        let inside = |i: i32| (i % 80 - 40).pow(2) + (i / 80 - 30).pow(2) < 400;
+        GrayImage::new(
+            (0..80 * 60)
+                .map(|i| if inside(i) { 210 } else { 40 })
+                .collect(),
+            80,
+            60,
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn a_disc_has_a_closed_rim() {
+        let edges = canny(&disc().view(), &CannyConfig::default()).unwrap();
+        assert!((100..180).contains(&edges.count()), "{}", edges.count());
+        for y in 0..60 {
+            for x in 0..80 {
+                if edges.is_edge(x, y) {
+                    let radius = (x as f64 - 40.0).hypot(y as f64 - 30.0);
+                    assert!((radius - 20.0).abs() < 1.5);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn weak_edges_need_a_strong_neighbour() {
+        let image = disc();
+        let at = |low, high| {
+            let thresholds = Thresholds::Fixed { low, high };
+            canny(
+                &image.view(),
+                &CannyConfig {
+                    thresholds,
+                    ..Default::default()
+                },
+            )
+            .unwrap()
+            .count()
+        };
+        assert_eq!(at(10.0, 5000.0), 0);
+        assert!(at(10.0, 300.0) >= at(300.0, 300.0));
+    }
+
+    #[test]
+    fn bad_parameters_are_refused() {
+        let view = disc();
+        for thresholds in [
+            Thresholds::Fixed {
+                low: 5.0,
+                high: 1.0,
+            },
+            Thresholds::Fixed {
+                low: f64::NAN,
+                high: 1.0,
+            },
+            Thresholds::Median {
+                factor: 0.0,
+                ratio: 0.4,
+            },
+            Thresholds::Median {
+                factor: 1.0,
+                ratio: 2.0,
+            },
+        ] {
+            assert!(
+                canny(
+                    &view.view(),
+                    &CannyConfig {
+                        thresholds,
+                        ..Default::default()
+                    }
+                )
+                .is_err()
+            );
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn any_image_is_fine_and_edges_are_thin(
+            width in 1usize..20, height in 1usize..20, seed in prop::collection::vec(any::<u8>(), 400),
+        ) {
+            let image = GrayImage::new(seed, width, height).unwrap();
+            for norm in [Norm::L1, Norm::L2] {
+                let config = CannyConfig { norm, sigma: 0.0, ..Default::default() };
+                let edges = canny(&image.view(), &config).unwrap();
+                prop_assert!(edges.count() <= width * height);
+            }
+            let flat = GrayImage::filled(width, height, seed_of(&image));
+            prop_assert_eq!(canny(&flat.view(), &CannyConfig::default()).unwrap().count(), 0);
+        }
+    }
+
+    fn seed_of(image: &GrayImage) -> u8 {
+        image.pixels()[0]
+    }
+}
