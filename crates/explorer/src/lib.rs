@@ -1,1 +1,26 @@
-//! Explores unknown rooms with a toy drone: the mission, and the explorer command.
+#![doc = include_str!("../README.md")]
+
+mod atlas;
+mod calibration;
+mod config;
+mod heading;
+mod mission;
+mod reach;
+mod route;
+mod scene;
+mod simulation;
+mod stage;
+
+pub use atlas::{Atlas, KnownLimits, Portal, PortalState, Site};
+pub use calibration::{Calibration, MoveKind};
+pub use config::{ConfigError, ExplorationConfig, MissionConfig, PerceptionConfig};
+pub use heading::LevelPose;
+pub use mission::{
+    CommandOutcome, Cycle, Event, Goal, Input, Logged, Mission, MissionRecord, Outcome, Output,
+    Scan, TrailPose,
+};
+pub use reach::{Reach, ReachLimits};
+pub use route::Route;
+pub use scene::{Presence, Scene, SceneError};
+pub use simulation::{FlightSummary, SimulatedFlight, SimulationError};
+pub use stage::{Stage, StageObserver};

@@ -1,0 +1,306 @@
+//! The command line: every command, its flags and their defaults.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Explores unknown rooms with a toy drone, and cleans, reads and plans on sparse SLAM maps.
+///
+/// Without a command it flies the demonstration. Lengths are map units: a monocular map has no scale.
+/// Where a length is not given, it is derived from the map's own size, as if the median distance from
+/// the camera to its points were 2.5 m; --scale says what a map unit really is.
+#[derive(Debug, Parser)]
+#[command(version, about, long_about, name = "explorer")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+/// What every command understands.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Output {
+    /// Print one JSON object on stdout and nothing else there.
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// Draw the result into FILE.svg or FILE.png.
+    #[arg(long, global = true, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Seed of everything random; the same seed gives the same result.
+    #[arg(long, global = true, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Fly the default simulated mission and write explorer-out/report.html.
+    Demo(Demo),
+    /// Run the whole pipeline once on a map: clean, exits, obstacles, path to the best exit.
+    Map(Pipeline),
+    /// Remove outliers; uses observations when the map has them.
+    Clean(Clean),
+    /// Find where the place opens, best first.
+    Exits(Exits),
+    /// Cluster the points into convex obstacles, and prove free space where observations allow it.
+    Obstacles(Obstacles),
+    /// Plan one path.
+    Plan(Plan),
+    /// Fly missions in the simulator, faster than real time.
+    Simulate(Simulate),
+}
+
+/// A map to read, and what its unit is.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Input {
+    /// .ply, .pcd, .csv, .xyz or .txt (x y z first), or a folder with map.ply, keyframes.csv and
+    /// observations.csv(.gz); of map_N.ply the newest.
+    #[arg(value_name = "INPUT")]
+    pub(crate) path: PathBuf,
+    /// Metres per map unit, if you know it.
+    #[arg(long, value_name = "METRES", value_parser = positive)]
+    pub(crate) scale: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Demo {
+    /// Folder for the report and the files beside it; made when missing.
+    #[arg(short, long, value_name = "DIR", default_value = "explorer-out")]
+    pub(crate) output: PathBuf,
+    #[arg(long, value_name = "W", default_value = "apartment", help = WORLD_HELP)]
+    pub(crate) world: String,
+}
+
+impl Default for Demo {
+    fn default() -> Self {
+        Self {
+            output: "explorer-out".into(),
+            world: "apartment".to_owned(),
+        }
+    }
+}
+
+const WORLD_HELP: &str =
+    "A preset (apartment, one-door-room, two-rooms, closed-room) or generated:SEED";
+
+#[derive(Debug, Args)]
+pub(crate) struct Pipeline {
+    #[command(flatten)]
+    pub(crate) input: Input,
+    /// Where the agent is.
+    #[arg(long, value_name = "x,y,z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = vector)]
+    pub(crate) position: Vector,
+    /// Which way is up: 0,-1,0 for ORB-SLAM maps (y points down).
+    #[arg(long, value_name = "x,y,z", default_value = "0,0,1", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) up: Vector,
+    /// Clusters to make; one for every 12 kept points by default.
+    #[arg(long, value_name = "K")]
+    pub(crate) clusters: Option<usize>,
+    /// Radius of the body that must fit, map units; as long as 0.15 m by default.
+    #[arg(long, value_name = "r", value_parser = positive)]
+    pub(crate) radius: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Clean {
+    #[command(flatten)]
+    pub(crate) input: Input,
+    /// How outliers are told.
+    #[arg(long, value_enum, default_value_t = CleanMethod::Submodular)]
+    pub(crate) method: CleanMethod,
+    /// Write the kept points.
+    #[arg(short, long, value_name = "KEPT.ply")]
+    pub(crate) output: Option<PathBuf>,
+    /// Repeat the work for a steadier time.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) repeat: u32,
+    /// Which way is up, for the picture; told by the keyframes, else 0,0,1.
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) up: Option<Vector>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CleanMethod {
+    /// Minimax submodular optimisation, recommended setting.
+    Submodular,
+    /// The paper's constants, literally: they remove nothing, on any map.
+    Paper,
+    /// Statistical outlier removal.
+    Sor,
+    /// Radius outlier removal.
+    Ror,
+    /// Density clustering.
+    Dbscan,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Exits {
+    #[command(flatten)]
+    pub(crate) input: Input,
+    /// Where the agent is.
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = vector)]
+    pub(crate) position: Vector,
+    /// Which way is up: 0,-1,0 for ORB-SLAM maps (y points down).
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) up: Vector,
+    /// What counts as an opening.
+    #[arg(long, value_enum, default_value_t = ExitRule::RangeAware)]
+    pub(crate) rule: ExitRule,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExitRule {
+    /// Sectors that are empty, or whose points lie well behind the wall beside them.
+    RangeAware,
+    /// Algorithm 2 as printed: the widest sector without points.
+    Paper,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Obstacles {
+    #[command(flatten)]
+    pub(crate) input: Input,
+    /// Clusters to make, at most as many as there are points.
+    #[arg(long, value_name = "K")]
+    pub(crate) clusters: usize,
+    /// Write the hulls as a Wavefront mesh.
+    #[arg(short, long, value_name = "HULLS.obj")]
+    pub(crate) output: Option<PathBuf>,
+    /// Write the centres of the voxels proven free; needs observations.
+    #[arg(long, value_name = "FREE.ply")]
+    pub(crate) proven_free: Option<PathBuf>,
+    /// Which way is up, for the picture; told by the keyframes, else 0,0,1.
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) up: Option<Vector>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Plan {
+    #[command(flatten)]
+    pub(crate) input: Input,
+    /// Where the path begins.
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = vector)]
+    pub(crate) from: Vector,
+    /// Where it ends.
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = vector)]
+    pub(crate) to: Vector,
+    /// Radius of the body that must fit, map units; as long as 0.15 m by default.
+    #[arg(long, value_name = "r", value_parser = positive)]
+    pub(crate) radius: Option<f64>,
+    #[arg(long, value_enum, default_value_t = Planner::Rrt)]
+    pub(crate) planner: Planner,
+    #[arg(long, value_enum, default_value_t = Refiner::Dag)]
+    pub(crate) refine: Refiner,
+    /// Where the path may lead; proven-free when the map has observations, else hulls.
+    #[arg(long, value_enum)]
+    pub(crate) space: Option<SpaceChoice>,
+    /// Clusters to make; one for every 12 kept points by default.
+    #[arg(long, value_name = "K")]
+    pub(crate) clusters: Option<usize>,
+    /// Which way is up, for the picture; told by the keyframes, else 0,0,1.
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) up: Option<Vector>,
+}
+
+/// How the tree grows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Planner {
+    Rrt,
+    RrtConnect,
+    RrtStar,
+    InformedRrtStar,
+}
+
+/// How the path is shortened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Refiner {
+    /// The shortest path over the path's own vertices.
+    Dag,
+    /// Tightened like a rope.
+    Rope,
+    /// The farthest vertex in sight, again and again.
+    Greedy,
+    None,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SpaceChoice {
+    /// Everywhere but in hulls (the paper): crosses walls that have no points.
+    Hulls,
+    /// Only where the camera has seen through, and in no hull.
+    ProvenFree,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Simulate {
+    #[arg(long, value_name = "W", help = WORLD_HELP)]
+    pub(crate) world: String,
+    /// Missions to fly, with seeds N, N + 1 and so on.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) runs: u32,
+    /// What the simulated camera delivers.
+    #[arg(long, value_parser = ["features"], default_value = "features")]
+    pub(crate) perception: String,
+    /// Which SLAM makes the map.
+    #[arg(long, value_parser = ["synthetic"], default_value = "synthetic")]
+    pub(crate) slam: String,
+    /// The radio link.
+    #[arg(long, value_parser = ["ideal"], default_value = "ideal")]
+    pub(crate) link: String,
+}
+
+/// Three numbers of the command line.
+pub(crate) type Vector = [f64; 3];
+
+fn vector(text: &str) -> Result<Vector, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| {
+            part.trim()
+                .parse()
+                .map_err(|_| format!("'{part}' is not a number"))
+        })
+        .collect::<Result<_, _>>()?;
+    match <Vector>::try_from(numbers.as_slice()) {
+        Ok(vector) if vector.iter().all(|x| x.is_finite()) => Ok(vector),
+        Ok(_) => Err("numbers must be finite".to_owned()),
+        Err(_) => Err(format!("{} numbers where x,y,z needs three", numbers.len())),
+    }
+}
+
+fn direction(text: &str) -> Result<Vector, String> {
+    let vector = vector(text)?;
+    let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length > 1e-9 && length.is_finite() {
+        Ok(vector.map(|x| x / length))
+    } else {
+        Err("a direction needs a length".to_owned())
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("must be a finite number above 0".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn vectors_have_three_finite_numbers() {
+        assert_eq!(vector("0,-1, 2.5"), Ok([0.0, -1.0, 2.5]));
+        assert!(vector("0,-1").is_err() && vector("a,b,c").is_err() && vector("nan,0,0").is_err());
+        assert_eq!(direction("0,-2,0"), Ok([0.0, -1.0, 0.0]));
+        assert!(direction("0,0,0").is_err());
+    }
+}

@@ -1,0 +1,144 @@
+//! `explorer clean`: which points of a map are outliers.
+
+use serde::Serialize;
+use slam_bridge::write_ply;
+use submodular_minimax::{OutlierConfig, baseline, remove_outliers};
+
+use crate::args::{Clean, CleanMethod, Output};
+use crate::failure::Failure;
+use crate::input::{self, LoadedMap};
+use crate::output::{deliver, write_file};
+use crate::plot::{Figure, TopView, color, scene};
+use crate::progress::Progress;
+use crate::stopwatch::{median, timed};
+
+/// The command's JSON object.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct CleanReport {
+    /// Points read.
+    pub(crate) points: usize,
+    /// Points kept.
+    pub(crate) kept: usize,
+    /// Rows of the removed points in the input, from 0.
+    pub(crate) removed_indices: Vec<usize>,
+    /// Median time of the repeats.
+    pub(crate) seconds: f64,
+    /// Iterations of Algorithm 1; none for a baseline.
+    pub(crate) iterations: Option<usize>,
+    /// Bounds on the value of the solution; none for a baseline.
+    pub(crate) certificate: Option<CertificateReport>,
+    #[serde(skip)]
+    pub(crate) kept_indices: Vec<usize>,
+}
+
+/// The value reached lies between the best possible and `upper_bound`.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct CertificateReport {
+    lower_bound: f64,
+    upper_bound: f64,
+}
+
+pub(crate) fn run(arguments: &Clean, output: &Output) -> Result<(), Failure> {
+    let progress = Progress::begin("reading the map");
+    let loaded = input::load(&arguments.input)?;
+    progress.step("removing outliers");
+    let report = clean(&loaded, arguments.method, arguments.repeat)?;
+    drop(progress);
+    if let Some(path) = &arguments.output {
+        let kept = loaded.map.with_points_at(&report.kept_indices);
+        write_file(path, |file| write_ply(&kept, file))?;
+    }
+    deliver(output, &report, &text(&report), || {
+        figure(&loaded, &report, arguments)
+    })
+}
+
+/// Cleans `repeat` times, which gives the same result each time.
+pub(crate) fn clean(
+    loaded: &LoadedMap,
+    method: CleanMethod,
+    repeat: u32,
+) -> Result<CleanReport, Failure> {
+    let mut times = Vec::new();
+    let mut result = None;
+    for _ in 0..repeat.max(1) {
+        let (removal, seconds) = timed(|| removal(loaded, method));
+        times.push(seconds);
+        result = Some(removal?);
+    }
+    let mut report = result.ok_or_else(|| Failure::internal("nothing was computed"))?;
+    report.seconds = median(times);
+    Ok(report)
+}
+
+fn removal(loaded: &LoadedMap, method: CleanMethod) -> Result<CleanReport, Failure> {
+    let points = &loaded.points;
+    let baseline = match method {
+        CleanMethod::Submodular => return minimax(loaded, &OutlierConfig::default()),
+        CleanMethod::Paper => return minimax(loaded, &OutlierConfig::paper()),
+        CleanMethod::Sor => baseline::statistical(points, &Default::default()),
+        CleanMethod::Ror => baseline::radius(points, &Default::default()),
+        CleanMethod::Dbscan => baseline::dbscan(points, &Default::default()),
+    };
+    let removal = baseline.map_err(|error| Failure::new(error, "correct the map"))?;
+    Ok(CleanReport {
+        points: points.len(),
+        kept: removal.kept.len(),
+        removed_indices: removal.removed,
+        seconds: 0.0,
+        iterations: None,
+        certificate: None,
+        kept_indices: removal.kept,
+    })
+}
+
+fn minimax(loaded: &LoadedMap, config: &OutlierConfig) -> Result<CleanReport, Failure> {
+    let views = loaded.views()?;
+    let removal = remove_outliers(&loaded.points, views.as_ref(), config)
+        .map_err(|error| Failure::new(error, "correct the map"))?;
+    let certificate = CertificateReport {
+        lower_bound: removal.certificate.lower_bound,
+        upper_bound: removal.certificate.upper_bound,
+    };
+    Ok(CleanReport {
+        points: loaded.points.len(),
+        kept: removal.kept.len(),
+        removed_indices: removal.removed,
+        seconds: 0.0,
+        iterations: Some(removal.iterations),
+        certificate: Some(certificate),
+        kept_indices: removal.kept,
+    })
+}
+
+/// The points at these places.
+pub(crate) fn at(points: &[[f64; 3]], indices: &[usize]) -> Vec<[f64; 3]> {
+    indices
+        .iter()
+        .filter_map(|index| points.get(*index).copied())
+        .collect()
+}
+
+/// "kept 4,239 of 4,460 points (95.0 %)".
+pub(crate) fn text(report: &CleanReport) -> String {
+    let share = 100.0 * report.kept as f64 / report.points.max(1) as f64;
+    format!(
+        "kept {} of {} points ({share:.1} %) in {:.3} s",
+        report.kept, report.points, report.seconds
+    )
+}
+
+fn figure(loaded: &LoadedMap, report: &CleanReport, arguments: &Clean) -> Result<Figure, Failure> {
+    let view = TopView::new(loaded.up(arguments.up), loaded.unit()).map_err(Failure::internal)?;
+    let kept = at(&loaded.points, &report.kept_indices);
+    let removed = at(&loaded.points, &report.removed_indices);
+    Ok(Figure {
+        title: "Outlier removal, seen from above".to_owned(),
+        subtitle: text(report),
+        axes: view.names(),
+        layers: vec![
+            scene::cloud("kept", color::POINT, &view, &kept),
+            scene::outliers(&view, &removed),
+        ],
+    })
+}

@@ -1,0 +1,162 @@
+//! `explorer exits`: where the place opens.
+
+use exit_finder::{AffinePlane, ExitConfig, ExitReport, ExitView, Gaze, find_exits};
+use serde::Serialize;
+
+use crate::args::{ExitRule, Exits, Output, Vector};
+use crate::failure::Failure;
+use crate::input::{self, LoadedMap};
+use crate::output::deliver;
+use crate::plot::{Figure, TopView, color, scene};
+
+/// The command's JSON object.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct ExitsReport {
+    /// Best first.
+    pub(crate) exits: Vec<ExitEntry>,
+    /// Sectors that the camera never looked into, radians about the agent, counter-clockwise from
+    /// above.
+    pub(crate) unseen_sectors: usize,
+    #[serde(skip)]
+    pub(crate) found: Option<ExitReport>,
+}
+
+/// One way out, in the map's frame and unit.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct ExitEntry {
+    /// From the agent, unit vector.
+    pub(crate) direction: [f64; 3],
+    /// Where to fly: behind the opening.
+    pub(crate) position: [f64; 3],
+    pub(crate) width_rad: f64,
+    /// Distance between the two sides of the opening.
+    pub(crate) width: f64,
+    /// From the agent to `position`.
+    pub(crate) range: f64,
+    pub(crate) score: f64,
+    /// "empty" or "range-jump".
+    pub(crate) kind: String,
+}
+
+pub(crate) fn run(arguments: &Exits, output: &Output) -> Result<(), Failure> {
+    let loaded = input::load(&arguments.input)?;
+    loaded.check_position("--position", arguments.position)?;
+    let points = loaded.points.clone();
+    let report = exits(
+        &loaded,
+        &points,
+        arguments.position,
+        arguments.up,
+        arguments.rule,
+    )?;
+    deliver(output, &report, &text(&report, loaded.unit()), || {
+        let subtitle = headline(&report);
+        figure(&loaded, &points, &report, arguments.up, &subtitle)
+    })
+}
+
+/// Looks for exits among these points.
+pub(crate) fn exits(
+    loaded: &LoadedMap,
+    points: &[[f64; 3]],
+    position: Vector,
+    up: Vector,
+    rule: ExitRule,
+) -> Result<ExitsReport, Failure> {
+    let plane = AffinePlane::from_up(up, position).map_err(Failure::internal)?;
+    let config = match rule {
+        ExitRule::RangeAware => ExitConfig::default(),
+        ExitRule::Paper => ExitConfig::paper(),
+    };
+    let gazes = gazes(loaded);
+    let view = ExitView {
+        gazes: &gazes,
+        ..ExitView::default()
+    };
+    let found = find_exits(points, position, &plane, &view, &config).map_err(|error| {
+        Failure::new(
+            error,
+            "check --position and --up, or give a map with more points",
+        )
+    })?;
+    let entry = |exit: &exit_finder::Exit| ExitEntry {
+        direction: exit.direction,
+        position: exit.position,
+        width_rad: exit.width_rad,
+        width: exit.width,
+        range: exit.range,
+        score: exit.score,
+        kind: format!("{:?}", exit.kind)
+            .replace("RangeJump", "range-jump")
+            .to_lowercase(),
+    };
+    let exits = found.exits.iter().map(entry).collect();
+    Ok(ExitsReport {
+        exits,
+        unseen_sectors: found.unseen.len(),
+        found: Some(found),
+    })
+}
+
+/// Where the keyframes looked, for a map that knows the camera's field of view.
+fn gazes(loaded: &LoadedMap) -> Vec<Gaze> {
+    let Some(frustum) = loaded.map.frustum else {
+        return Vec::new();
+    };
+    let gaze = |keyframe: &slam_bridge::KeyFrame| Gaze {
+        position: keyframe.center().into(),
+        forward: keyframe.forward().into(),
+        half_fov_rad: frustum.half_horizontal,
+    };
+    loaded.map.keyframes.iter().map(gaze).collect()
+}
+
+fn headline(report: &ExitsReport) -> String {
+    match report.exits.len() {
+        0 => "no exit: enclosed as far as it was seen".to_owned(),
+        1 => "1 exit".to_owned(),
+        more => format!("{more} exits"),
+    }
+}
+
+/// A line for each exit.
+pub(crate) fn text(report: &ExitsReport, unit: &str) -> String {
+    let mut text = headline(report);
+    for (rank, exit) in report.exits.iter().enumerate() {
+        let [x, y, z] = exit.direction;
+        text.push_str(&format!(
+            "\n{}. direction {x:.3},{y:.3},{z:.3}, {:.0} degrees wide, {:.2} {unit} away, score {:.2} ({})",
+            rank + 1,
+            exit.width_rad.to_degrees(),
+            exit.range,
+            exit.score,
+            exit.kind,
+        ));
+    }
+    text
+}
+
+/// The projected map with spokes and exits (the paper's figures 2, 3d and 3e).
+pub(crate) fn figure(
+    loaded: &LoadedMap,
+    points: &[[f64; 3]],
+    report: &ExitsReport,
+    up: Vector,
+    subtitle: &str,
+) -> Result<Figure, Failure> {
+    let found = report
+        .found
+        .as_ref()
+        .ok_or_else(|| Failure::internal("no profile"))?;
+    let view = TopView::new(up, loaded.unit()).map_err(Failure::internal)?;
+    let mut layers = scene::banded_cloud(&view, points, &found.profile, color::POINT);
+    layers.push(scene::spokes(&view, &found.profile));
+    layers.extend(scene::exits(&view, found));
+    layers.push(scene::agent(&view, found.profile.agent));
+    Ok(Figure {
+        title: "Exits, seen from above".to_owned(),
+        subtitle: subtitle.to_owned(),
+        axes: view.names(),
+        layers,
+    })
+}

@@ -1,0 +1,122 @@
+//! `explorer obstacles`: convex obstacles from points, and the space that was seen through.
+
+use serde::Serialize;
+use slam_bridge::{Map, write_ply};
+
+use crate::args::{Obstacles, Output, Vector};
+use crate::failure::Failure;
+use crate::input::{self, LoadedMap};
+use crate::output::{deliver, write_file};
+use crate::planning::{Surroundings, surroundings};
+use crate::plot::{Figure, Layer, TopView, color, scene};
+use crate::progress::Progress;
+use crate::stopwatch::timed;
+
+/// The command's JSON object.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct ObstaclesReport {
+    /// Number of obstacles.
+    pub(crate) obstacles: usize,
+    /// How many of them are points, segments or flat.
+    pub(crate) degenerate: usize,
+    /// Sum of squared distances to the clusters' centres, squared map units.
+    pub(crate) inertia: f64,
+    /// Voxels seen through; 0 without observations.
+    pub(crate) proven_free_voxels: usize,
+    /// Edge of a voxel, map units; none without observations.
+    pub(crate) resolution: Option<f64>,
+    pub(crate) seconds: f64,
+}
+
+pub(crate) fn run(arguments: &Obstacles, output: &Output) -> Result<(), Failure> {
+    let progress = Progress::begin("reading the map");
+    let loaded = input::load(&arguments.input)?;
+    progress.step("building obstacles");
+    let all: Vec<usize> = (0..loaded.points.len()).collect();
+    let units = loaded.units_per_meter(None);
+    let (built, seconds) =
+        timed(|| surroundings(&loaded, &all, Some(arguments.clusters), units, output.seed));
+    let built = built?;
+    drop(progress);
+    if let Some(path) = &arguments.output {
+        write_file(path, |file| built.obstacles.write_obj(file))?;
+    }
+    if let Some(path) = &arguments.proven_free {
+        built.space(true)?;
+        let centers = built
+            .free
+            .as_ref()
+            .map(|free| free.voxel_centers())
+            .unwrap_or_default();
+        let map = Map {
+            scale: loaded.map.scale,
+            ..Map::from_positions(centers)
+        };
+        write_file(path, |file| write_ply(&map, file))?;
+    }
+    let report = report(&built, seconds);
+    deliver(output, &report, &text(&report), || {
+        figure(&loaded, &built, &report, arguments.up)
+    })
+}
+
+pub(crate) fn report(built: &Surroundings, seconds: f64) -> ObstaclesReport {
+    ObstaclesReport {
+        obstacles: built.obstacles.len(),
+        degenerate: built.obstacles.degenerate_count(),
+        inertia: built.obstacles.inertia(),
+        proven_free_voxels: built.free.as_ref().map_or(0, |free| free.voxel_count()),
+        resolution: built.free.as_ref().map(|free| free.resolution()),
+        seconds,
+    }
+}
+
+pub(crate) fn text(report: &ObstaclesReport) -> String {
+    let free = match report.resolution {
+        Some(edge) => format!(
+            "{} voxels of {edge:.3} map units proven free",
+            report.proven_free_voxels
+        ),
+        None => "no observations, so nothing is proven free".to_owned(),
+    };
+    format!(
+        "{} obstacles ({} degenerate), {free}, in {:.3} s",
+        report.obstacles, report.degenerate, report.seconds
+    )
+}
+
+/// Free space, hulls and points from above.
+pub(crate) fn layers(view: &TopView, points: &[[f64; 3]], built: &Surroundings) -> Vec<Layer> {
+    let mut layers = Vec::new();
+    if let Some(free) = &built.free {
+        layers.push(scene::free_space(
+            view,
+            &free.voxel_centers(),
+            free.resolution(),
+        ));
+    }
+    let hulls: Vec<Vec<[f64; 3]>> = built
+        .obstacles
+        .obstacles()
+        .iter()
+        .map(|hull| hull.vertices.clone())
+        .collect();
+    layers.push(scene::cloud("points", color::POINT, view, points));
+    layers.push(scene::hulls(view, &hulls));
+    layers
+}
+
+fn figure(
+    loaded: &LoadedMap,
+    built: &Surroundings,
+    report: &ObstaclesReport,
+    up: Option<Vector>,
+) -> Result<Figure, Failure> {
+    let view = TopView::new(loaded.up(up), loaded.unit()).map_err(Failure::internal)?;
+    Ok(Figure {
+        title: "Obstacles, seen from above".to_owned(),
+        subtitle: text(report),
+        axes: view.names(),
+        layers: layers(&view, &loaded.points, built),
+    })
+}

@@ -1,0 +1,30 @@
+//! The explorer command: reads maps, plans on them, and flies simulated missions.
+
+mod args;
+mod command;
+mod failure;
+mod input;
+mod logging;
+mod output;
+mod planning;
+mod plot;
+mod progress;
+mod report;
+mod stopwatch;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+fn main() -> ExitCode {
+    // Wrong usage ends here with exit code 2.
+    let cli = args::Cli::parse();
+    logging::begin();
+    match command::run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::complain(&failure);
+            ExitCode::FAILURE
+        }
+    }
+}

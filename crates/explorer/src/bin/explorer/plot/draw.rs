@@ -1,0 +1,165 @@
+//! Drawing a figure as SVG: titles, axes and legend by plotters, the layers between them by us.
+
+use core::fmt;
+
+use plotters::coord::{Shift, types::RangedCoordf64};
+use plotters::prelude::*;
+
+use super::figure::{Figure, Layer, Shape};
+use super::frame::Frame;
+use super::shapes;
+
+/// Size of a figure, pixels.
+const SIZE: (u32, u32) = (900, 640);
+/// Space for titles and axis labels, pixels.
+const LEFT: u32 = 76;
+const RIGHT: u32 = 16;
+const TOP: u32 = 64;
+const BOTTOM: u32 = 56;
+/// Of these the part between the outermost label and the picture's edge.
+const EDGE: u32 = 10;
+
+const TEXT: RGBColor = RGBColor(40, 44, 52);
+const FAINT: RGBColor = RGBColor(112, 118, 128);
+/// Stands where the layers go: above the grid, below the legend.
+const PLACE: &str = "@@layers@@";
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// A figure that could not be drawn; drawing into memory leaves hardly a reason.
+#[derive(Debug)]
+pub(crate) struct DrawError(String);
+
+impl fmt::Display for DrawError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cannot draw the picture: {}", self.0)
+    }
+}
+
+impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawError {
+    fn from(error: DrawingAreaErrorKind<E>) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl Figure {
+    /// The figure as an SVG document.
+    pub(crate) fn to_svg(&self) -> Result<String, DrawError> {
+        let size = (
+            f64::from(SIZE.0 - LEFT - RIGHT),
+            f64::from(SIZE.1 - TOP - BOTTOM),
+        );
+        let frame = Frame::around(self, size.0 / size.1);
+        let mut svg = String::new();
+        self.draw_around_layers(&mut svg, &frame)?;
+        let origin = (LEFT as i32, TOP as i32);
+        Ok(put_layers(
+            &svg,
+            &shapes::element(&self.layers, &frame, origin, size),
+        ))
+    }
+
+    fn draw_around_layers(&self, svg: &mut String, frame: &Frame) -> Result<(), DrawError> {
+        let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        self.draw_titles(&root, frame)?;
+        let mut chart = ChartBuilder::on(&root)
+            .margin_top(TOP)
+            .margin_bottom(EDGE)
+            .margin_right(RIGHT)
+            .margin_left(EDGE)
+            .set_label_area_size(LabelAreaPosition::Left, LEFT - EDGE)
+            .set_label_area_size(LabelAreaPosition::Bottom, BOTTOM - EDGE)
+            .build_cartesian_2d(frame.x.clone(), frame.y.clone())?;
+        chart
+            .configure_mesh()
+            .x_desc(self.axes[0].as_str())
+            .y_desc(self.axes[1].as_str())
+            .axis_desc_style(font(15.0, TEXT))
+            .label_style(font(13.0, TEXT))
+            .axis_style(FAINT)
+            .bold_line_style(RGBColor(226, 229, 234))
+            .light_line_style(TRANSPARENT)
+            .draw()?;
+        root.draw(&Text::new(PLACE, (0, 0), font(10.0, TEXT)))?;
+        self.draw_legend(&mut chart)?;
+        root.present()?;
+        Ok(())
+    }
+
+    fn draw_titles(&self, root: &Area<'_>, frame: &Frame) -> Result<(), DrawError> {
+        let x = LEFT as i32;
+        root.draw(&Text::new(self.title.clone(), (x, 12), font(20.0, TEXT)))?;
+        let subtitle = match frame.clipped(self) {
+            (0, _) => self.subtitle.clone(),
+            (outside, _) => format!(
+                "{}; {outside} points lie outside the picture",
+                self.subtitle
+            ),
+        };
+        root.draw(&Text::new(subtitle, (x, 40), font(13.5, FAINT)))?;
+        Ok(())
+    }
+
+    fn draw_legend<'a>(&self, chart: &mut Chart<'a, 'a>) -> Result<(), DrawError> {
+        let mut lines = 0;
+        for layer in self.layers.iter().filter(|layer| !layer.is_empty()) {
+            let Some(label) = &layer.label else { continue };
+            let mark = layer.clone();
+            chart
+                .draw_series(core::iter::empty::<Circle<(f64, f64), i32>>())?
+                .label(label)
+                .legend(move |at| sample(&mark, at));
+            lines += 1;
+        }
+        if lines > 0 {
+            chart
+                .configure_series_labels()
+                .position(SeriesLabelPosition::UpperRight)
+                .background_style(WHITE.mix(0.86))
+                .border_style(RGBColor(206, 210, 216))
+                .label_font(font(13.0, TEXT))
+                .draw()?;
+        }
+        Ok(())
+    }
+}
+
+/// A layer's mark in the legend, 20 pixels wide.
+fn sample<'a>(
+    layer: &Layer,
+    (x, y): (i32, i32),
+) -> DynElement<'static, SVGBackend<'a>, (i32, i32)> {
+    let (r, g, b) = layer.color;
+    let color = RGBColor(r, g, b);
+    match &layer.shape {
+        Shape::Dots { .. } => Circle::new((x + 10, y), 4, color.filled()).into_dyn(),
+        Shape::Crosses { .. } => Cross::new((x + 10, y), 4, color.stroke_width(2)).into_dyn(),
+        Shape::Segments { .. } | Shape::Line { .. } => {
+            PathElement::new([(x + 1, y), (x + 19, y)], color.stroke_width(3)).into_dyn()
+        }
+        Shape::Polygons { .. } => {
+            let box_style = color.mix(layer.opacity.max(0.3)).filled();
+            Rectangle::new([(x + 3, y - 5), (x + 17, y + 5)], box_style).into_dyn()
+        }
+    }
+}
+
+fn font(size: f64, color: RGBColor) -> TextStyle<'static> {
+    ("sans-serif", size).into_font().color(&color)
+}
+
+/// Puts the layers in place of the mark's whole text element.
+fn put_layers(svg: &str, layers: &str) -> String {
+    let place = svg.split_once(PLACE).and_then(|(before, after)| {
+        Some((
+            before.rsplit_once("<text")?.0,
+            after.split_once("</text>")?.1,
+        ))
+    });
+    match place {
+        Some((before, after)) => [before, layers, after].concat(),
+        None => svg.to_owned(),
+    }
+}

@@ -1,0 +1,15 @@
+//! Pictures: figures made of layers, drawn as SVG, and as PNG by rendering that SVG.
+
+mod axes;
+mod draw;
+mod figure;
+mod frame;
+mod outline;
+mod png;
+mod save;
+pub(crate) mod scene;
+mod shapes;
+
+pub(crate) use axes::TopView;
+pub(crate) use figure::{Figure, Layer, color};
+pub(crate) use save::save;

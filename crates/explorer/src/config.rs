@@ -1,0 +1,277 @@
+//! Every constant of the mission, with unit, range and source; metric ones are turned into map units by the measured scale.
+
+use core::time::Duration;
+
+use exit_finder::ExitConfig;
+use submodular_minimax::OutlierConfig;
+
+/// Constants of one mission. `Default` flies a Tello through rooms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MissionConfig {
+    /// Radius of the drone's body, metres: 0.10 for a Tello with its propellers (98 x 93 mm, propellers beyond).
+    pub drone_radius_m: f64,
+    /// Kept free around the body when planning, metres: covers heading and distance errors of a leg and the map's noise.
+    pub margin_m: f64,
+    /// Flying height above the ground, metres.
+    pub flight_height_m: f64,
+    /// Space around the start that the operator keeps clear, metres: initialising and the triangle happen in it.
+    pub start_bubble_m: f64,
+    /// Stops of a full turn, at least 3. Ten steps of 36 degrees overlap by a third in a 55 degree picture.
+    pub scan_steps: usize,
+    /// Climb between the stops, centimetres, 20..=500: the paper's "up and down".
+    pub scan_climb_cm: i64,
+    /// Side of the triangle flown to fit the plane (A, v), centimetres, 20..=500.
+    pub triangle_cm: i64,
+    /// Longest straight leg without a new look at the pose, metres.
+    pub longest_leg_m: f64,
+    /// Land at this charge, percent.
+    pub battery_floor_percent: u8,
+    /// Land after this time.
+    pub time_budget: Duration,
+    /// Land after this many scans.
+    pub scan_budget: usize,
+    /// Stop a leg when the pose has been unknown for this long.
+    pub lost_patience: Duration,
+    /// How the map becomes a scene.
+    pub perception: PerceptionConfig,
+    /// How exits are chosen and reached.
+    pub exploration: ExplorationConfig,
+}
+
+/// Constants of map cleaning, proven-free space, obstacles and exits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PerceptionConfig {
+    /// Outlier removal.
+    pub clean: OutlierConfig,
+    /// Exit finding; `min_width` is set from the drone's need when the scale is known.
+    pub exits: ExitConfig,
+    /// Edge of a proven-free voxel, metres.
+    pub voxel_m: f64,
+    /// Half opening angle of the cone that a matched feature proves free, radians: a 31 pixel ORB patch at f = 920 pixels
+    /// covers 15 / 920.
+    pub patch_half_angle: f64,
+    /// Points to a cluster on average: K = points / this (paper: K is given, the map's size is not).
+    pub points_per_cluster: usize,
+    /// Clusters longer than this are split, metres, so that no hull bridges a doorway.
+    pub largest_obstacle_m: f64,
+}
+
+/// Constants of choosing where to fly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExplorationConfig {
+    /// How far from the flying height paths may lie, metres.
+    pub height_band_m: f64,
+    /// An exit counts as passed within this distance of the point behind it, metres.
+    pub arrival_m: f64,
+    /// An approach must come nearer to its exit by this, metres, or the exit counts as blocked.
+    pub least_progress_m: f64,
+    /// Approaches to one exit at most.
+    pub approaches: usize,
+    /// Exits nearer than this to the flown path lead to known space, metres (reference: 0.75).
+    pub known_distance_m: f64,
+    /// Earlier sites see what lies this deep inside their profile, metres (reference: 0.3).
+    pub known_shrink_m: f64,
+    /// RRT iterations before the flood's own path is taken.
+    pub rrt_iterations: usize,
+    /// Longest edge of the tree, metres.
+    pub rrt_step_m: f64,
+}
+
+impl Default for MissionConfig {
+    fn default() -> Self {
+        Self {
+            drone_radius_m: 0.10,
+            margin_m: 0.12,
+            flight_height_m: 1.0,
+            start_bubble_m: 0.6,
+            scan_steps: 10,
+            scan_climb_cm: 40,
+            triangle_cm: 40,
+            longest_leg_m: 1.2,
+            battery_floor_percent: 15,
+            time_budget: Duration::from_secs(12 * 60),
+            scan_budget: 60,
+            lost_patience: Duration::from_millis(800),
+            perception: PerceptionConfig::default(),
+            exploration: ExplorationConfig::default(),
+        }
+    }
+}
+
+impl Default for PerceptionConfig {
+    fn default() -> Self {
+        Self {
+            clean: OutlierConfig::default(),
+            exits: ExitConfig::default(),
+            voxel_m: 0.10,
+            patch_half_angle: 15.0 / 920.0,
+            points_per_cluster: 12,
+            largest_obstacle_m: 0.6,
+        }
+    }
+}
+
+impl Default for ExplorationConfig {
+    fn default() -> Self {
+        Self {
+            height_band_m: 0.35,
+            arrival_m: 0.35,
+            least_progress_m: 0.4,
+            approaches: 5,
+            known_distance_m: 0.75,
+            known_shrink_m: 0.3,
+            rrt_iterations: 4000,
+            rrt_step_m: 0.5,
+        }
+    }
+}
+
+/// Why a configuration is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// A number outside its range.
+    #[error("mission configuration: {field} is {value}, it must lie in {range}")]
+    OutOfRange {
+        /// Which field.
+        field: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
+}
+
+impl MissionConfig {
+    /// Checks every number against its range.
+    ///
+    /// # Errors
+    /// [`ConfigError::OutOfRange`] names the first field that lies outside.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        within(
+            "drone_radius_m",
+            self.drone_radius_m,
+            0.01,
+            2.0,
+            "0.01..=2 m",
+        )?;
+        within("margin_m", self.margin_m, 0.0, 2.0, "0..=2 m")?;
+        within(
+            "flight_height_m",
+            self.flight_height_m,
+            0.3,
+            10.0,
+            "0.3..=10 m",
+        )?;
+        within("start_bubble_m", self.start_bubble_m, 0.0, 10.0, "0..=10 m")?;
+        within("scan_steps", self.scan_steps as f64, 3.0, 360.0, "3..=360")?;
+        within(
+            "scan_climb_cm",
+            self.scan_climb_cm as f64,
+            20.0,
+            500.0,
+            "20..=500 cm",
+        )?;
+        within(
+            "triangle_cm",
+            self.triangle_cm as f64,
+            20.0,
+            500.0,
+            "20..=500 cm",
+        )?;
+        within("longest_leg_m", self.longest_leg_m, 0.2, 5.0, "0.2..=5 m")?;
+        within(
+            "battery_floor_percent",
+            f64::from(self.battery_floor_percent),
+            5.0,
+            90.0,
+            "5..=90 %",
+        )?;
+        within(
+            "scan_budget",
+            self.scan_budget as f64,
+            1.0,
+            1e6,
+            "1..=1000000",
+        )?;
+        within("voxel_m", self.perception.voxel_m, 0.01, 1.0, "0.01..=1 m")?;
+        within(
+            "patch_half_angle",
+            self.perception.patch_half_angle,
+            0.0,
+            0.2,
+            "0..=0.2 rad",
+        )?;
+        within(
+            "points_per_cluster",
+            self.perception.points_per_cluster as f64,
+            1.0,
+            1e6,
+            "1..=1000000",
+        )?;
+        within(
+            "largest_obstacle_m",
+            self.perception.largest_obstacle_m,
+            0.05,
+            1e3,
+            "0.05..=1000 m",
+        )?;
+        within(
+            "rrt_step_m",
+            self.exploration.rrt_step_m,
+            0.01,
+            100.0,
+            "0.01..=100 m",
+        )?;
+        within(
+            "height_band_m",
+            self.exploration.height_band_m,
+            0.0,
+            5.0,
+            "0..=5 m",
+        )
+    }
+
+    /// Radius that a planned motion keeps free, metres.
+    #[must_use]
+    pub fn planning_radius_m(&self) -> f64 {
+        self.drone_radius_m + self.margin_m
+    }
+}
+
+fn within(
+    field: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+    range: &'static str,
+) -> Result<(), ConfigError> {
+    // A NaN lies in no range.
+    if (low..=high).contains(&value) {
+        Ok(())
+    } else {
+        Err(ConfigError::OutOfRange {
+            field,
+            value,
+            range,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_valid_and_nonsense_is_not() {
+        assert_eq!(MissionConfig::default().validate(), Ok(()));
+        for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+            let config = MissionConfig {
+                drone_radius_m: bad,
+                ..MissionConfig::default()
+            };
+            let error = config.validate().unwrap_err();
+            assert!(error.to_string().contains("drone_radius_m"), "{error}");
+        }
+    }
+}

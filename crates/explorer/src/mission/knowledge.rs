@@ -1,0 +1,135 @@
+//! What the mission knows from its inputs: time, pose, tracking, battery, scale, and where it has been.
+
+use core::time::Duration;
+
+use nalgebra::{Isometry3, Point3, Vector3};
+use slam_bridge::{SlamUpdate, TrackingState};
+use tello_sdk::Telemetry;
+
+use crate::calibration::Calibration;
+use crate::heading::LevelPose;
+
+/// One tracked frame of the flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrailPose {
+    /// When, on the caller's clock.
+    pub time: Duration,
+    /// The map's epoch that the pose belongs to.
+    pub epoch: u64,
+    /// Camera-to-world, map units.
+    pub world_from_camera: Isometry3<f64>,
+}
+
+/// The latest of everything.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Knowledge {
+    now: Duration,
+    telemetry: Telemetry,
+    tracking: TrackingState,
+    camera: Option<Isometry3<f64>>,
+    epoch: u64,
+    untracked_since: Option<Duration>,
+    calibration: Calibration,
+    trail: Vec<TrailPose>,
+}
+
+impl Knowledge {
+    pub(super) fn observe(
+        &mut self,
+        now: Duration,
+        telemetry: &Telemetry,
+        slam: Option<&SlamUpdate>,
+    ) {
+        self.now = self.now.max(now);
+        self.telemetry = telemetry.clone();
+        if let Some(update) = slam {
+            self.observe_slam(update);
+        }
+    }
+
+    fn observe_slam(&mut self, update: &SlamUpdate) {
+        if update.epoch != self.epoch {
+            // A new map has a new frame and a new unit: nothing measured before holds.
+            self.calibration = Calibration::default();
+            self.epoch = update.epoch;
+        }
+        self.tracking = update.state;
+        self.camera = update
+            .world_from_camera
+            .filter(|_| update.state == TrackingState::Tracking);
+        match self.camera {
+            Some(world_from_camera) => {
+                self.untracked_since = None;
+                self.trail.push(TrailPose {
+                    time: update.time,
+                    epoch: update.epoch,
+                    world_from_camera,
+                });
+            }
+            None => {
+                self.untracked_since.get_or_insert(update.time);
+            }
+        }
+    }
+
+    pub(super) fn now(&self) -> Duration {
+        self.now
+    }
+
+    /// Height above the ground, metres, where the drone tells it.
+    pub(super) fn height_m(&self) -> Option<f64> {
+        self.telemetry
+            .height_m
+            .as_ref()
+            .filter(|reading| reading.valid)
+            .map(|reading| reading.value)
+    }
+
+    /// Charge in percent, where the drone tells it.
+    pub(super) fn battery_percent(&self) -> Option<u8> {
+        self.telemetry
+            .battery
+            .as_ref()
+            .map(|reading| reading.value.percent())
+    }
+
+    pub(super) fn epoch(&self) -> u64 {
+        self.epoch
+    }
+
+    pub(super) fn is_tracking(&self) -> bool {
+        self.tracking == TrackingState::Tracking
+    }
+
+    /// How long the pose has been unknown; zero while tracking.
+    pub(super) fn untracked_for(&self) -> Duration {
+        self.untracked_since
+            .map_or(Duration::ZERO, |since| self.now.saturating_sub(since))
+    }
+
+    pub(super) fn tracked_position(&self) -> Option<(u64, Point3<f64>)> {
+        self.camera
+            .map(|camera| (self.epoch, Point3::from(camera.translation.vector)))
+    }
+
+    /// The drone's pose, level, if it is tracked.
+    pub(super) fn pose(&self) -> Option<LevelPose> {
+        LevelPose::from_camera(&self.camera?, self.up())
+    }
+
+    pub(super) fn up(&self) -> Vector3<f64> {
+        self.calibration.up()
+    }
+
+    pub(super) fn meters_per_unit(&self) -> Option<f64> {
+        self.calibration.meters_per_unit()
+    }
+
+    pub(super) fn calibrate(&mut self, commanded: Vector3<f64>, measured: Vector3<f64>) {
+        self.calibration.add(commanded, measured);
+    }
+
+    pub(super) fn trail(&self) -> &[TrailPose] {
+        &self.trail
+    }
+}

@@ -1,0 +1,250 @@
+//! The exploration mission as a state machine without IO (Tukan et al. 2023, section IV-C).
+//!
+//! Feed it frames ([`Input::Frame`]) at about 10 Hz, answers of the drone and maps as they come; after every input call
+//! [`Mission::poll`] until it says [`Output::Wait`] or [`Output::Finished`]. It reads no clock, socket or file: time
+//! and randomness come in from outside, so the same inputs give the same mission.
+//!
+//! Order: take off, translate until SLAM initialises, turn 360 degrees while going up and down, fly the triangle that fits the plane
+//! (A, v), clean, find the exit, build obstacles, plan, refine, fly, repeat; land when no exit is left, when the
+//! battery is low, when time is up, or when the pose is lost for good.
+
+mod context;
+mod event;
+mod fly;
+mod initialize;
+mod knowledge;
+mod landing;
+mod maneuver;
+mod outcome;
+mod phase;
+mod pilot;
+mod record;
+mod recover;
+mod scan;
+mod take_off;
+mod think;
+
+use core::time::Duration;
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+use slam_bridge::{Map, SlamUpdate};
+use tello_sdk::{Command, Telemetry};
+
+use crate::atlas::Atlas;
+use crate::config::{ConfigError, MissionConfig};
+use crate::stage::StageObserver;
+use context::{Context, Shared};
+pub use event::{Event, Goal, Logged};
+use knowledge::Knowledge;
+pub use knowledge::TrailPose;
+use landing::Landing;
+pub use outcome::Outcome;
+use phase::{Phase, Step};
+pub use pilot::CommandOutcome;
+use pilot::Pilot;
+pub use record::{Cycle, MissionRecord, Scan};
+use recover::Recover;
+use take_off::TakeOff;
+
+/// Commands that fail in a row before the mission gives up and lands.
+const MOST_FAILURES: usize = 6;
+
+/// What a mission is told.
+#[derive(Debug, Clone)]
+pub enum Input {
+    /// A frame's worth of news: the time, the latest telemetry and, if there is one, the SLAM system's update.
+    Frame {
+        /// On the caller's clock, never going back.
+        now: Duration,
+        /// The drone's state.
+        telemetry: Box<Telemetry>,
+        /// The pose and whether to trust it.
+        slam: Option<SlamUpdate>,
+    },
+    /// How the command in flight ended.
+    Answer(CommandOutcome),
+    /// The map that [`Output::NeedMap`] asked for.
+    Map(Box<Map>),
+    /// Land now.
+    Stop,
+}
+
+/// What a mission wants.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Output {
+    /// Send this to the drone. At most one command is in flight, but `stop` and `land` may overtake it.
+    Send(Command),
+    /// Hand in the whole map.
+    NeedMap,
+    /// Nothing until the next input.
+    Wait,
+    /// The mission is over.
+    Finished(Outcome),
+}
+
+/// A mission under way.
+pub struct Mission {
+    shared: Shared,
+    pilot: Pilot,
+    phase: Phase,
+}
+
+impl Mission {
+    /// A mission that has not taken off yet; `seed` drives planning and clustering.
+    ///
+    /// # Errors
+    /// A field of `config` outside its range.
+    pub fn new(config: MissionConfig, seed: u64) -> Result<Self, ConfigError> {
+        config.validate()?;
+        let shared = Shared {
+            config,
+            knowledge: Knowledge::default(),
+            rng: Pcg64::seed_from_u64(seed),
+            atlas: Atlas::default(),
+            epoch: None,
+            scene: None,
+            map: None,
+            last: None,
+            failures: 0,
+            scans: Vec::new(),
+            triangle_flown: None,
+            cycles: Vec::new(),
+            log: Vec::new(),
+            outcome: None,
+        };
+        Ok(Self {
+            shared,
+            pilot: Pilot::new(),
+            phase: Phase::TakeOff(TakeOff::default()),
+        })
+    }
+
+    /// Takes one piece of news.
+    pub fn handle(&mut self, input: Input) {
+        match input {
+            Input::Frame {
+                now,
+                telemetry,
+                slam,
+            } => {
+                self.shared
+                    .knowledge
+                    .observe(now, &telemetry, slam.as_ref());
+                if let Some(finished) = self.pilot.tick(&mut self.shared.knowledge) {
+                    let failed = finished.outcome != CommandOutcome::Done;
+                    self.shared.failures = if failed { self.shared.failures + 1 } else { 0 };
+                    self.shared.last = Some(finished);
+                }
+            }
+            Input::Answer(outcome) => self.pilot.answer(outcome, self.shared.knowledge.now()),
+            Input::Map(map) => self.shared.map = Some(*map),
+            Input::Stop => self.begin_landing(Outcome::Stopped),
+        }
+    }
+
+    /// What to do now. `stages` hears of each stage of heavy work.
+    pub fn poll(&mut self, stages: &mut dyn StageObserver) -> Output {
+        if let Some(outcome) = &self.shared.outcome {
+            return Output::Finished(outcome.clone());
+        }
+        self.watch();
+        if let Some(stop) = self.interrupt_lost_flight() {
+            return Output::Send(stop);
+        }
+        if !self.pilot.is_idle() {
+            return Output::Wait;
+        }
+        loop {
+            let mut context = Context {
+                shared: &mut self.shared,
+                stages,
+            };
+            match self.phase.next(&mut context) {
+                Step::Send(command) => {
+                    self.pilot.start(command.clone(), &self.shared.knowledge);
+                    return Output::Send(command);
+                }
+                Step::Wait => return Output::Wait,
+                Step::NeedMap => return Output::NeedMap,
+                Step::Become(phase) => self.phase = phase,
+                Step::Finish => {
+                    let outcome = self.shared.outcome.clone().unwrap_or(Outcome::Stopped);
+                    self.shared.outcome = Some(outcome.clone());
+                    return Output::Finished(outcome);
+                }
+            }
+        }
+    }
+
+    /// What has happened so far.
+    #[must_use]
+    pub fn record(&self) -> MissionRecord<'_> {
+        MissionRecord {
+            outcome: self.shared.outcome.as_ref(),
+            scans: &self.shared.scans,
+            cycles: &self.shared.cycles,
+            scene: self.shared.scene.as_ref(),
+            trail: self.shared.knowledge.trail(),
+            meters_per_unit: self.shared.knowledge.meters_per_unit(),
+            up: self.shared.knowledge.up().into(),
+            log: &self.shared.log,
+        }
+    }
+
+    /// Battery, time and a drone that keeps failing: all end in a landing.
+    fn watch(&mut self) {
+        if !self.phase.is_airborne() {
+            return;
+        }
+        let shared = &self.shared;
+        let battery = shared.knowledge.battery_percent();
+        let outcome =
+            if let Some(percent) = battery.filter(|&p| p <= shared.config.battery_floor_percent) {
+                Outcome::BatteryLow { percent }
+            } else if shared.knowledge.now() > shared.config.time_budget {
+                Outcome::OutOfTime
+            } else if shared.failures >= MOST_FAILURES {
+                Outcome::DroneFailed {
+                    answer: last_answer(shared),
+                }
+            } else {
+                return;
+            };
+        self.begin_landing(outcome);
+    }
+
+    fn begin_landing(&mut self, outcome: Outcome) {
+        if matches!(self.phase, Phase::Land(_)) || self.shared.outcome.is_some() {
+            return;
+        }
+        // Landing does not wait for a move to end: the drone obeys `land` at any time.
+        self.pilot.abandon();
+        self.shared.last = None;
+        self.phase = Phase::Land(Landing::new(outcome));
+    }
+
+    /// Stops a leg on which the pose was lost; the recovery begins when the drone has answered.
+    fn interrupt_lost_flight(&mut self) -> Option<Command> {
+        let lost_for = self.shared.knowledge.untracked_for();
+        if !self.phase.needs_pose() || lost_for < self.shared.config.lost_patience {
+            return None;
+        }
+        let moving = self.pilot.is_moving();
+        let flown_cm = self.pilot.flown_cm(self.shared.knowledge.now());
+        self.shared.log(Event::Lost);
+        self.phase = Phase::Recover(flown_cm.map_or_else(Recover::in_place, Recover::on_leg));
+        if !moving {
+            return None;
+        }
+        self.pilot.interrupt();
+        Some(Command::Stop)
+    }
+}
+
+fn last_answer(shared: &Shared) -> String {
+    match shared.last_outcome() {
+        Some(CommandOutcome::Refused(answer)) => answer.clone(),
+        Some(CommandOutcome::Done) | Some(CommandOutcome::Unknown) | None => "no answer".to_owned(),
+    }
+}

@@ -1,0 +1,198 @@
+//! One command at a time: sends it, waits for the answer, lets the drone settle, and measures what the move did.
+
+use core::time::Duration;
+
+use nalgebra::{Point3, Vector3};
+use tello_sdk::Command;
+
+use super::knowledge::Knowledge;
+
+/// How a command ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CommandOutcome {
+    /// The drone said that it did it.
+    Done,
+    /// The drone refused, in its own words.
+    Refused(String),
+    /// No answer in time: it may or may not have been done.
+    Unknown,
+}
+
+/// Time that SLAM needs after a move until its pose counts: frames come at about 10 Hz.
+const SETTLE: Duration = Duration::from_millis(400);
+
+/// Time from a command to the first movement, seconds (0.3 to 0.4 were seen).
+const REACTION_S: f64 = 0.35;
+/// Speed that a leg is taken to be flown with, metres per second: rather too slow, so that a retreat stays on the leg.
+const CRUISE_M_PER_S: f64 = 0.35;
+
+/// A command that has ended and settled.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Finished {
+    pub(super) command: Command,
+    pub(super) outcome: CommandOutcome,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum State {
+    Idle,
+    InFlight(Flight),
+    Settling {
+        flight: Flight,
+        outcome: CommandOutcome,
+        until: Duration,
+    },
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Flight {
+    command: Command,
+    since: Duration,
+    deadline: Duration,
+    /// Epoch and position when the command left, if tracked.
+    before: Option<(u64, Point3<f64>)>,
+    /// A stop was sent meanwhile: the length flown is not the length commanded.
+    interrupted: bool,
+}
+
+/// Keeps the one command in flight.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Pilot {
+    state: State,
+}
+
+impl Pilot {
+    pub(super) fn new() -> Self {
+        Self { state: State::Idle }
+    }
+
+    pub(super) fn is_idle(&self) -> bool {
+        self.state == State::Idle
+    }
+
+    /// Whether the drone is on its way along a straight move right now.
+    pub(super) fn is_moving(&self) -> bool {
+        match &self.state {
+            State::InFlight(flight) => {
+                !flight.interrupted && displacement(&flight.command).norm() > 0.0
+            }
+            State::Idle | State::Settling { .. } => false,
+        }
+    }
+
+    /// Takes charge of `command`, which the caller sends now.
+    pub(super) fn start(&mut self, command: Command, knowledge: &Knowledge) {
+        let since = knowledge.now();
+        let deadline = since + time_limit(&command);
+        let before = knowledge.tracked_position();
+        self.state = State::InFlight(Flight {
+            command,
+            since,
+            deadline,
+            before,
+            interrupted: false,
+        });
+    }
+
+    /// Marks the move in flight as cut short by a stop.
+    pub(super) fn interrupt(&mut self) {
+        if let State::InFlight(flight) = &mut self.state {
+            flight.interrupted = true;
+        }
+    }
+
+    /// About how much of a forward leg has been flown, centimetres, rounded down; `None` when no such leg is in flight.
+    pub(super) fn flown_cm(&self, now: Duration) -> Option<i64> {
+        let State::InFlight(flight) = &self.state else {
+            return None;
+        };
+        let commanded = displacement(&flight.command);
+        if commanded.x <= 0.0 || commanded.x < commanded.z.abs() {
+            return None;
+        }
+        let seconds = now.saturating_sub(flight.since).as_secs_f64();
+        let flown = (CRUISE_M_PER_S * (seconds - REACTION_S)).clamp(0.0, commanded.x);
+        Some((flown * 100.0).floor() as i64)
+    }
+
+    /// Forgets the command in flight: something more urgent goes out.
+    pub(super) fn abandon(&mut self) {
+        self.state = State::Idle;
+    }
+
+    /// The drone's answer to the command in flight.
+    pub(super) fn answer(&mut self, outcome: CommandOutcome, now: Duration) {
+        if let State::InFlight(flight) = &self.state {
+            self.state = State::Settling {
+                flight: flight.clone(),
+                outcome,
+                until: now + SETTLE,
+            };
+        }
+    }
+
+    /// Lets time pass; hands out the command once it has ended and settled, after adding its move to the calibration.
+    pub(super) fn tick(&mut self, knowledge: &mut Knowledge) -> Option<Finished> {
+        let now = knowledge.now();
+        match &self.state {
+            State::InFlight(flight) if now >= flight.deadline => {
+                self.state = State::Settling {
+                    flight: flight.clone(),
+                    outcome: CommandOutcome::Unknown,
+                    until: now + SETTLE,
+                };
+                None
+            }
+            State::Settling {
+                flight,
+                outcome,
+                until,
+            } if now >= *until => {
+                let finished = Finished {
+                    command: flight.command.clone(),
+                    outcome: outcome.clone(),
+                };
+                if finished.outcome == CommandOutcome::Done && !flight.interrupted {
+                    measure(flight, knowledge);
+                }
+                self.state = State::Idle;
+                Some(finished)
+            }
+            State::Idle | State::InFlight(_) | State::Settling { .. } => None,
+        }
+    }
+}
+
+/// Compares what was commanded with what the map saw, if both ends were tracked in one epoch.
+fn measure(flight: &Flight, knowledge: &mut Knowledge) {
+    let (Some((epoch, before)), Some((now_epoch, after))) =
+        (flight.before, knowledge.tracked_position())
+    else {
+        return;
+    };
+    if epoch == now_epoch {
+        knowledge.calibrate(displacement(&flight.command), after - before);
+    }
+}
+
+/// The commanded displacement (forward, left, up) in metres; zero for everything that does not translate.
+pub(super) fn displacement(command: &Command) -> Vector3<f64> {
+    match *command {
+        Command::Up(d) => Vector3::new(0.0, 0.0, d.meters()),
+        Command::Down(d) => Vector3::new(0.0, 0.0, -d.meters()),
+        Command::Left(d) => Vector3::new(0.0, d.meters(), 0.0),
+        Command::Right(d) => Vector3::new(0.0, -d.meters(), 0.0),
+        Command::Forward(d) => Vector3::new(d.meters(), 0.0, 0.0),
+        Command::Back(d) => Vector3::new(-d.meters(), 0.0, 0.0),
+        Command::Go { to, .. } => Vector3::from(to.meters()),
+        _ => Vector3::zeros(),
+    }
+}
+
+/// Longest wait for an answer; take-offs were seen to take up to 20 s, the drone itself gives up a move after about 15 s.
+fn time_limit(command: &Command) -> Duration {
+    match command {
+        Command::TakeOff | Command::Land => Duration::from_secs(20),
+        _ => Duration::from_secs(16),
+    }
+}

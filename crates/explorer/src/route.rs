@@ -1,0 +1,73 @@
+//! A planned and refined path to one reachable place.
+//!
+//! Method: RRT (LaValle 1998, the paper's planner) in the box around the places that the flood reached, then the shortest path in the
+//! visibility DAG of its vertices (the paper's sub-path replacement, done optimally). Where the tree finds nothing within its budget, the flood's
+//! own path, free by construction, is refined instead.
+
+use nalgebra::Point3;
+use rand::Rng;
+use rrt_refine::{Bounds, Path, RrtConfig, refine, rrt};
+
+use crate::config::ExplorationConfig;
+use crate::reach::Reach;
+use crate::scene::Scene;
+use crate::stage::{Stage, StageObserver, staged};
+
+/// A path, map units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Route {
+    /// As planned, start first.
+    pub raw: Vec<[f64; 3]>,
+    /// As refined, start first.
+    pub path: Vec<[f64; 3]>,
+    /// Whether the tree found it; otherwise it is the flood's.
+    pub by_tree: bool,
+}
+
+impl Route {
+    /// Length of the refined path, map units.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.path
+            .windows(2)
+            .map(|leg| (Point3::from(leg[1]) - Point3::from(leg[0])).norm())
+            .sum()
+    }
+
+    /// Plans from the flood's start to its place `index` for a ball of `radius` map units.
+    pub fn plan(
+        scene: &Scene,
+        reach: &Reach,
+        index: usize,
+        radius: f64,
+        config: &ExplorationConfig,
+        rng: &mut impl Rng,
+        stages: &mut dyn StageObserver,
+    ) -> Option<Self> {
+        let free =
+            |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
+        let flooded: Vec<[f64; 3]> = reach.path_to(index).into_iter().map(Into::into).collect();
+        let (start, goal) = (*flooded.first()?, *flooded.last()?);
+        let planned = staged(stages, Stage::Plan, || {
+            let corners: Vec<[f64; 3]> = reach.positions().map(Into::into).collect();
+            let bounds = Bounds::around(&corners, scene.units(config.rrt_step_m)).ok()?;
+            let settings = RrtConfig {
+                step_length: scene.units(config.rrt_step_m),
+                max_iterations: config.rrt_iterations,
+                ..RrtConfig::default()
+            };
+            rrt(start, goal, &bounds, &free, &settings, rng).ok()?.path
+        });
+        let by_tree = planned.is_some();
+        let raw = match planned {
+            Some(path) => path,
+            None => Path::new(&flooded).ok()?,
+        };
+        let refined = staged(stages, Stage::Refine, || refine::dag(&raw, &free));
+        Some(Self {
+            raw: raw.into_points(),
+            path: refined.path.into_points(),
+            by_tree,
+        })
+    }
+}

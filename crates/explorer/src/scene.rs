@@ -1,0 +1,311 @@
+//! One look at a map: cleaned points, obstacles, and the space that is proven free.
+//!
+//! Input:  a map with observations, metres per map unit, and the places where the drone itself has been.
+//! Output: a [`Scene`] that answers whether a motion is free.
+//! Method: 1. outlier removal; 2. rays from keyframes to the kept points that they see carve proven-free voxels; 3. K-means and
+//!         hulls (paper, section IV-B). A motion is free when it stays clear of all hulls *and* inside what was
+//!         seen through: blank walls have no points, so hulls alone leak (paper's rule: hulls alone).
+//! Degenerate input: fewer than five points are all kept; a map without observations proves nothing free.
+
+use exit_finder::{
+    AffinePlane, ExitConfig, ExitError, ExitReport, ExitView, Gaze, PlaneError, find_exits,
+};
+use nalgebra::{Point3, Vector3};
+use rand::Rng;
+use slam_bridge::Map;
+use sparse_to_obstacles::{
+    FreeSpace, FreeSpaceConfig, FreeSpaceError, ObstacleConfig, ObstacleError, ObstacleSet, Ray,
+    Space,
+};
+use submodular_minimax::{OutlierError, Views, ViewsError, remove_outliers};
+
+use crate::config::{MissionConfig, PerceptionConfig};
+use crate::heading::LevelPose;
+use crate::stage::{Stage, StageObserver, staged};
+
+/// What one look at a map yields. All coordinates in map units.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// All points of the map.
+    pub points: Vec<[f64; 3]>,
+    /// Indices of the points that were kept, ascending.
+    pub kept: Vec<usize>,
+    /// Indices of the points that were removed, ascending.
+    pub removed: Vec<usize>,
+    /// The convex obstacles.
+    pub obstacles: ObstacleSet,
+    /// The space that rays have proven free.
+    pub free: FreeSpace,
+    /// Metres per map unit.
+    pub meters_per_unit: f64,
+}
+
+/// Why no scene could be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// The scale is unusable.
+    #[error("the map's scale is {meters_per_unit} metres per unit; it must be finite and positive")]
+    Scale {
+        /// What was given.
+        meters_per_unit: f64,
+    },
+    /// The observations contradict themselves.
+    #[error(transparent)]
+    Views(#[from] ViewsError),
+    /// Outlier removal failed.
+    #[error(transparent)]
+    Clean(#[from] OutlierError),
+    /// Obstacles could not be built.
+    #[error(transparent)]
+    Obstacles(#[from] ObstacleError),
+    /// Proven-free space could not be built.
+    #[error(transparent)]
+    FreeSpace(#[from] FreeSpaceError),
+    /// No ground-parallel plane.
+    #[error(transparent)]
+    Plane(#[from] PlaneError),
+    /// Exits could not be looked for.
+    #[error(transparent)]
+    Exits(#[from] ExitError),
+}
+
+/// A place where the drone's body has been, so that it is free.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Presence {
+    /// Centre, map units.
+    pub center: [f64; 3],
+    /// Radius, map units.
+    pub radius: f64,
+}
+
+impl Presence {
+    fn holds(&self, point: &[f64; 3]) -> bool {
+        (Point3::from(*point) - Point3::from(self.center)).norm() < self.radius
+    }
+}
+
+impl Scene {
+    /// Looks at `map`.
+    ///
+    /// # Errors
+    /// The first stage that fails, with its reason.
+    pub fn new(
+        map: &Map,
+        meters_per_unit: f64,
+        presence: &[Presence],
+        config: &MissionConfig,
+        rng: &mut impl Rng,
+        stages: &mut dyn StageObserver,
+    ) -> Result<Self, SceneError> {
+        if !(meters_per_unit.is_finite() && meters_per_unit > 0.0) {
+            return Err(SceneError::Scale { meters_per_unit });
+        }
+        let perception = &config.perception;
+        let points = map.positions();
+        let removal = staged(stages, Stage::Clean, || clean(map, &points, perception))?;
+        let solid: Vec<[f64; 3]> = removal
+            .kept
+            .iter()
+            .filter_map(|&index| points.get(index).copied())
+            .filter(|point| !presence.iter().any(|place| place.holds(point)))
+            .collect();
+        let free = staged(stages, Stage::FreeSpace, || {
+            proven_free(
+                map,
+                &removal.kept,
+                &solid,
+                meters_per_unit,
+                presence,
+                config,
+            )
+        })?;
+        let obstacles = staged(stages, Stage::Obstacles, || {
+            obstacles(&solid, meters_per_unit, perception, rng)
+        })?;
+        Ok(Self {
+            points,
+            kept: removal.kept,
+            removed: removal.removed,
+            obstacles,
+            free,
+            meters_per_unit,
+        })
+    }
+
+    /// Metres in map units.
+    #[must_use]
+    pub fn units(&self, meters: f64) -> f64 {
+        meters / self.meters_per_unit
+    }
+
+    /// Whether a ball of `radius` map units may fly straight from `a` to `b`.
+    #[must_use]
+    pub fn motion_is_free(&self, a: &Point3<f64>, b: &Point3<f64>, radius: f64) -> bool {
+        let space = Space::ProvenFree {
+            hulls: &self.obstacles,
+            free: &self.free,
+        };
+        space.motion_is_free((*a).into(), (*b).into(), radius)
+    }
+
+    /// The radius, map units, to plan with from `start`: `radius`, or less where the drone already is nearer to an obstacle, but
+    /// never less than `least`.
+    #[must_use]
+    pub fn radius_at(&self, start: &Point3<f64>, radius: f64, least: f64) -> f64 {
+        // A shade under the clearance itself, since contact does not count as free.
+        radius
+            .min(0.98 * self.obstacles.point_clearance((*start).into()))
+            .max(least)
+    }
+
+    /// Positions of the points that were kept.
+    #[must_use]
+    pub fn kept_points(&self) -> Vec<[f64; 3]> {
+        self.kept
+            .iter()
+            .filter_map(|&index| self.points.get(index).copied())
+            .collect()
+    }
+
+    /// Looks for exits around `pose`; `map` tells where the camera looked.
+    ///
+    /// # Errors
+    /// Too few points around the agent, or a degenerate plane.
+    pub fn exits(
+        &self,
+        map: &Map,
+        pose: &LevelPose,
+        config: &MissionConfig,
+    ) -> Result<ExitReport, SceneError> {
+        let plane = AffinePlane::from_up(pose.up.into(), pose.position.into())?;
+        let gazes = gazes(map);
+        let view = ExitView {
+            heading: Some(pose.forward.into()),
+            gazes: &gazes,
+            virtual_points: &[],
+        };
+        let need = 2.0 * config.planning_radius_m();
+        let exits = ExitConfig {
+            min_width: Some(self.units(need)),
+            ..config.perception.exits
+        };
+        Ok(find_exits(
+            &self.kept_points(),
+            pose.position.into(),
+            &plane,
+            &view,
+            &exits,
+        )?)
+    }
+}
+
+/// Where the keyframes looked.
+fn gazes(map: &Map) -> Vec<Gaze> {
+    let Some(frustum) = map.frustum else {
+        return Vec::new();
+    };
+    map.keyframes
+        .iter()
+        .map(|keyframe| Gaze {
+            position: keyframe.center().into(),
+            forward: Vector3::from(keyframe.forward()).into(),
+            half_fov_rad: frustum.half_horizontal,
+        })
+        .collect()
+}
+
+fn clean(
+    map: &Map,
+    points: &[[f64; 3]],
+    config: &PerceptionConfig,
+) -> Result<submodular_minimax::OutlierRemoval, SceneError> {
+    let views = views(map)?;
+    Ok(remove_outliers(points, views.as_ref(), &config.clean)?)
+}
+
+/// The map's observations as the outlier removal wants them; `None` for a map that has none.
+pub(crate) fn views(map: &Map) -> Result<Option<Views>, ViewsError> {
+    if !map.has_observations() {
+        return Ok(None);
+    }
+    let centers = map
+        .keyframes
+        .iter()
+        .map(|keyframe| keyframe.center().into())
+        .collect();
+    let observers = map
+        .points
+        .iter()
+        .map(|point| observer_indices(map, &point.observers))
+        .collect();
+    Views::new(centers, observers).map(Some)
+}
+
+/// Positions of the observers in the list of keyframes; observers that the map does not hold are left out.
+fn observer_indices(map: &Map, observers: &[slam_bridge::KeyFrameId]) -> Vec<usize> {
+    observers
+        .iter()
+        .filter_map(|id| {
+            map.keyframes
+                .binary_search_by_key(id, |keyframe| keyframe.id)
+                .ok()
+        })
+        .collect()
+}
+
+fn proven_free(
+    map: &Map,
+    kept: &[usize],
+    solid: &[[f64; 3]],
+    meters_per_unit: f64,
+    presence: &[Presence],
+    config: &MissionConfig,
+) -> Result<FreeSpace, SceneError> {
+    let settings = free_space_config(meters_per_unit, config);
+    let mut free = FreeSpace::from_rays(rays(map, kept), solid, &settings)?;
+    for places in presence.chunk_by(|a, b| a.radius == b.radius) {
+        let centers: Vec<[f64; 3]> = places.iter().map(|place| place.center).collect();
+        free.add_balls(&centers, places.first().map_or(0.0, |place| place.radius))?;
+    }
+    Ok(free)
+}
+
+/// One ray from every keyframe to every point of `kept` that it sees.
+pub(crate) fn rays(map: &Map, kept: &[usize]) -> Vec<Ray> {
+    let mut rays = Vec::new();
+    for point in kept.iter().filter_map(|&index| map.points.get(index)) {
+        let end = point.position.into();
+        let observers = point.observers.iter().filter_map(|&id| map.keyframe(id));
+        rays.extend(observers.map(|keyframe| Ray {
+            origin: keyframe.center().into(),
+            end,
+        }));
+    }
+    rays
+}
+
+fn free_space_config(meters_per_unit: f64, config: &MissionConfig) -> FreeSpaceConfig {
+    FreeSpaceConfig {
+        resolution: config.perception.voxel_m,
+        patch_half_angle: config.perception.patch_half_angle,
+        // The hulls keep the body clear of points; asking for more here would close doorways.
+        clearance: config.drone_radius_m,
+        ..FreeSpaceConfig::default()
+    }
+    .scaled(1.0 / meters_per_unit)
+}
+
+fn obstacles(
+    solid: &[[f64; 3]],
+    meters_per_unit: f64,
+    config: &PerceptionConfig,
+    rng: &mut impl Rng,
+) -> Result<ObstacleSet, SceneError> {
+    let clusters = (solid.len() / config.points_per_cluster.max(1)).max(1);
+    let settings = ObstacleConfig {
+        max_diameter: config.largest_obstacle_m / meters_per_unit,
+        ..ObstacleConfig::with_clusters(clusters)
+    };
+    Ok(ObstacleSet::from_points(solid, &settings, rng)?)
+}
