@@ -6,6 +6,8 @@ extern crate alloc;
 extern crate std;
 
 pub mod command;
+#[cfg(feature = "std")]
+pub mod driver;
 pub mod emulator;
 pub mod reply;
 pub mod safety;
@@ -18,6 +20,8 @@ pub mod video;
 pub use command::{
     Arc, Class, Command, Credentials, Flip, Pad, Query, ReplyShape, SdkVersion, Waypoint,
 };
+#[cfg(feature = "std")]
+pub use driver::{ConnectError, DriveError, Drone, DroneConfig};
 pub use reply::{Refusal, Reply, ReplyKind};
 pub use safety::{Alarm, Finding, PreflightConfig, SafetyConfig, preflight};
 pub use session::{

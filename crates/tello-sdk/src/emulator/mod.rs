@@ -18,6 +18,8 @@ mod obey;
 mod physics;
 pub(crate) mod random;
 mod sensors;
+#[cfg(feature = "std")]
+pub mod udp;
 
 pub use config::{EmulatorConfig, Timing, WhenBusy};
 pub use faults::{Faults, Impairment};

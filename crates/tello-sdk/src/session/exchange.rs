@@ -3,6 +3,7 @@
 use super::Session;
 use super::event::{Outcome, RequestId, Verdict};
 use super::evidence::Snapshot;
+use super::priority::MOTOR_LAG;
 use crate::command::{Class, Command, Query, ReplyShape};
 use core::time::Duration;
 
@@ -57,7 +58,7 @@ impl Session {
         let before = self.evidence.snapshot(self.now);
         self.send(&command);
         if matches!(command, Command::TakeOff | Command::ThrowFly) {
-            self.lift_off_sent = Some(self.now);
+            self.lift_off_until = Some(self.now + self.config.max_delay + MOTOR_LAG);
             self.guard.motors(self.now, Some(true));
         }
         if shape == ReplyShape::Silent {

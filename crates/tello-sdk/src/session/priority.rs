@@ -28,7 +28,7 @@ pub(super) struct Urgent {
 /// Standing still for this long confirms a `stop`.
 const STOPPED: Duration = Duration::from_millis(500);
 /// The motor time's resolution and a little: a standstill older than a lift-off by less proves nothing.
-const MOTOR_LAG: Duration = Duration::from_millis(3000);
+pub(super) const MOTOR_LAG: Duration = Duration::from_millis(3000);
 
 impl Session {
     /// Gives up what is in flight, drops what waits, centres the sticks and begins to repeat.
@@ -146,16 +146,14 @@ impl Session {
 
     /// Whether a take-off may be on its way or begun without a sign in the motor time.
     pub(super) fn may_be_lifting_off(&self) -> bool {
-        let lag = self.config.max_delay + MOTOR_LAG;
-        self.lift_off_sent
-            .is_some_and(|sent| self.now.saturating_sub(sent) < lag)
+        self.lift_off_until.is_some_and(|until| self.now < until)
     }
 
     fn end_urgent(&mut self, urgent: Urgent, outcome: Outcome) {
         let grounds = !matches!(urgent.command, Command::Stop);
         if grounds && matches!(outcome, Outcome::Confirmed | Outcome::Answered(_)) {
             self.guard.motors(self.now, Some(false));
-            self.lift_off_sent = None;
+            self.lift_off_until = None;
         }
         if urgent.sent > urgent.answers {
             let longest = self.config.motion_timeout + self.config.max_delay;

@@ -3,6 +3,7 @@
 use super::Session;
 use super::event::{Event, Origin, Outcome};
 use super::exchange::Probe;
+use super::priority::MOTOR_LAG;
 use crate::command::{Class, Command, ReplyShape};
 use crate::reply::{Refusal, Reply, ReplyKind};
 use crate::state::StateLine;
@@ -168,7 +169,7 @@ impl Session {
             Some(refusal) => {
                 // A doubled take-off may be refused and carried out: with telemetry, only the motors tell.
                 if lifts && !self.evidence.is_fresh(self.now) {
-                    self.lift_off_sent = None;
+                    self.lift_off_until = None;
                     self.guard.motors(self.now, Some(false));
                 }
                 Outcome::Refused {
@@ -178,7 +179,7 @@ impl Session {
             }
             None => {
                 if lifts {
-                    self.lift_off_sent = None;
+                    self.lift_off_until = Some(self.now + MOTOR_LAG);
                 }
                 Outcome::Answered(reply.clone())
             }

@@ -1,0 +1,129 @@
+//! The blocking driver against emulated drones on loopback sockets.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use tello_sdk::emulator::udp::{ServeConfig, serve};
+use tello_sdk::emulator::{EmulatorConfig, Timing};
+use tello_sdk::*;
+
+fn free_port(ip: Ipv4Addr) -> u16 {
+    UdpSocket::bind((ip, 0))
+        .unwrap()
+        .local_addr()
+        .unwrap()
+        .port()
+}
+
+/// Serves a fast drone while `body` runs with a configuration for it.
+fn with_drone(address: Ipv4Addr, body: impl FnOnce(DroneConfig) + std::panic::UnwindSafe) {
+    let state_port = free_port(Ipv4Addr::LOCALHOST);
+    let drone = EmulatorConfig {
+        timing: Timing::fast(),
+        state_port,
+        ..EmulatorConfig::default()
+    };
+    let config = ServeConfig {
+        address,
+        command_port: free_port(address),
+        count: 1,
+        drone,
+    };
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| serve(&config, &stop).unwrap());
+        let client = DroneConfig {
+            drone: SocketAddr::from((address, config.command_port)),
+            command_bind: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
+            state_bind: SocketAddr::from((Ipv4Addr::LOCALHOST, state_port)),
+            ..DroneConfig::default()
+        };
+        let result = std::panic::catch_unwind(|| body(client));
+        stop.store(true, Ordering::Relaxed);
+        if let Err(panic) = result {
+            std::panic::resume_unwind(panic);
+        }
+    });
+}
+
+#[test]
+fn a_flight_over_sockets() {
+    with_drone(Ipv4Addr::new(127, 0, 0, 21), |config| {
+        let drone = Drone::connect(config).unwrap();
+        drone.take_off().unwrap();
+        drone.forward(Distance::from_cm(50).unwrap()).unwrap();
+        drone.clockwise(Turn::from_degrees(90).unwrap()).unwrap();
+        assert!(drone.battery().unwrap().percent() > 80);
+        assert_eq!(drone.query(Query::Sdk).unwrap(), "20");
+        let (telemetry, age) = drone.telemetry().unwrap();
+        assert!(telemetry.attitude.is_some() && age < Duration::from_secs(1));
+        drone.land().unwrap();
+        assert!(!drone.may_be_flying().unwrap());
+        assert_eq!(drone.counters().unwrap().stale, 0);
+    });
+}
+
+#[test]
+fn dropping_the_connection_lands() {
+    with_drone(Ipv4Addr::new(127, 0, 0, 22), |config| {
+        let drone = Drone::connect(config.clone()).unwrap();
+        drone.take_off().unwrap();
+        drop(drone);
+        let again = Drone::connect(config).unwrap();
+        let refused = again.forward(Distance::MIN).unwrap_err();
+        assert!(matches!(
+            refused,
+            DriveError::Refused {
+                refusal: Refusal::MotorStop,
+                ..
+            }
+        ));
+    });
+}
+
+#[test]
+fn a_panic_lands() {
+    with_drone(Ipv4Addr::new(127, 0, 0, 23), |config| {
+        let copy = config.clone();
+        let flight = std::panic::catch_unwind(move || {
+            let drone = Drone::connect(copy).unwrap();
+            drone.take_off().unwrap();
+            panic!("the mission failed");
+        });
+        assert!(flight.is_err());
+        let again = Drone::connect(config).unwrap();
+        assert!(
+            again.forward(Distance::MIN).is_err(),
+            "it stands on the ground"
+        );
+    });
+}
+
+#[test]
+fn a_drone_that_is_not_there_is_an_error_in_time() {
+    let mut config = DroneConfig::at(SocketAddr::from((
+        [127, 0, 0, 24],
+        free_port(Ipv4Addr::LOCALHOST),
+    )));
+    config.state_bind = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+    config.session.setting_timeout = Duration::from_millis(100);
+    let start = Instant::now();
+    assert!(matches!(
+        Drone::connect(config),
+        Err(ConnectError::NoAnswer { .. })
+    ));
+    assert!(start.elapsed() < Duration::from_secs(10));
+}
+
+#[test]
+fn a_port_in_use_is_named() {
+    let taken = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let mut config = DroneConfig::at(SocketAddr::from(([127, 0, 0, 25], 9)));
+    config.state_bind = taken.local_addr().unwrap();
+    let error = Drone::connect(config).unwrap_err();
+    assert!(
+        matches!(error, ConnectError::Bind { address, .. } if address == taken.local_addr().unwrap())
+    );
+}
