@@ -2,13 +2,23 @@
 
 pub mod baseline;
 mod disjoint_sets;
+pub mod functions;
+mod joint_function;
+pub mod laws;
+pub mod maximize;
 pub mod minimax;
+pub mod minimize;
 mod neighbours;
 pub mod outlier;
 mod points;
+mod set_function;
+mod subset;
 mod views;
 
-pub use minimax::{Beta, Certificate, StopReason};
+pub use joint_function::{Joined, JointFunction, Split};
+pub use minimax::{Beta, Certificate, MinimaxConfig, StopReason};
 pub use outlier::{OutlierConfig, OutlierError, OutlierRemoval, Reading, Solver, remove_outliers};
 pub use points::PointLike;
+pub use set_function::{Growth, SetFunction};
+pub use subset::Subset;
 pub use views::{Views, ViewsError};

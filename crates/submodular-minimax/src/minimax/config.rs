@@ -1,5 +1,7 @@
 //! How much the points already in weigh, and why an iteration stopped.
 
+use super::solution::MinimaxError;
+
 /// β of Iterative-X-Growing: how much f(X ∪ Xᵢ₋₁) weighs against f(X ∪ Yᵢ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Beta {
@@ -32,4 +34,54 @@ pub enum StopReason {
     ClosedForm,
     /// The allowed number of iterations was reached first.
     IterationLimit,
+}
+
+/// Settings of the iterating minimax algorithms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MinimaxConfig {
+    /// β; default √|N₁|, the weight with the best a-priori guarantee. The exploration paper takes 1.
+    pub beta: Beta,
+    /// Iterations at most, at least 1. X grows in each, so |N₁| + 1 is always enough; the default.
+    pub max_iterations: usize,
+}
+
+impl Default for MinimaxConfig {
+    fn default() -> Self {
+        Self {
+            beta: Beta::Sqrt,
+            max_iterations: usize::MAX,
+        }
+    }
+}
+
+impl MinimaxConfig {
+    /// β = 1 as the exploration paper prints it.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self {
+            beta: Beta::Fixed(1.0),
+            ..Self::default()
+        }
+    }
+
+    /// Checks every field's range.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn validate(&self) -> Result<(), MinimaxError> {
+        let setting = |field, value, range| {
+            Err(MinimaxError::Setting {
+                field,
+                value,
+                range,
+            })
+        };
+        match self.beta {
+            Beta::Fixed(beta) if !(beta.is_finite() && beta > 0.0) => {
+                setting("beta", beta, "finite and above 0")
+            }
+            _ if self.max_iterations == 0 => setting("max_iterations", 0.0, "at least 1"),
+            _ => Ok(()),
+        }
+    }
 }

@@ -1,0 +1,112 @@
+//! Iterative-X-Growing: X grows by what the current worst response makes worth having.
+//!
+//! ```text
+//! 1  X₀ = argmin_X f(X), i = 0
+//! 3  i += 1
+//! 4  Yᵢ ≈ argmax_Y f(Xᵢ₋₁ ∪ Y)                        (oracle of factor α)
+//! 5  X′ᵢ = argmin_X β f(X ∪ Xᵢ₋₁) + f(X ∪ Yᵢ)          (exact)
+//! 6  Xᵢ = Xᵢ₋₁ ∪ X′ᵢ
+//! 7  until X′ᵢ ⊆ Xᵢ₋₁, then return Xᵢ₋₁
+//! ```
+//!
+//! Cost: at most |N₁| + 1 rounds of one oracle call and one minimisation each.
+
+use super::solution::{MinimaxError, MinimaxSolution, finish, minimize, response_bound};
+use super::{MinimaxConfig, StopReason};
+use crate::functions::Modular;
+use crate::joint_function::{GivenY, JointFunction};
+use crate::maximize::Maximizer;
+use crate::minimize::Minimizer;
+use crate::set_function::SetFunction;
+use crate::subset::Subset;
+
+/// Approximates min over X of max over Y of a jointly submodular f ≥ 0.
+///
+/// `oracle` answers line 4, `minimizer` lines 1 and 5; where the function is modular in X the closed
+/// form is taken instead. Guarantee: max over Y of f(X ∪ Y) ≤ (2 + T/β + β) τ / α.
+///
+/// # Errors
+/// Settings out of range, whatever the oracle or the minimiser reports.
+pub fn iterative_x_growing<F: JointFunction + ?Sized>(
+    function: &F,
+    oracle: &mut dyn Maximizer,
+    minimizer: &dyn Minimizer,
+    config: &MinimaxConfig,
+) -> Result<MinimaxSolution, MinimaxError> {
+    config.validate()?;
+    let beta = config.beta.value(function.x_size());
+    let nothing = Subset::empty(function.y_size());
+    let first = minimize(
+        &GivenY {
+            function,
+            y: nothing,
+        },
+        minimizer,
+    )?;
+    let (mut x, mut lower_bound) = (first.set, first.lower_bound);
+    let mut iterations = 0;
+    let stop = loop {
+        if iterations == config.max_iterations {
+            break StopReason::IterationLimit;
+        }
+        iterations += 1;
+        let answer = oracle.maximize(function.given_x(&x).as_ref())?;
+        lower_bound = lower_bound.max(response_bound(function, &answer.set, minimizer)?);
+        let growth = GrowthObjective {
+            function,
+            beta,
+            before: &x,
+            y: answer.set,
+        };
+        let joining = minimize(&growth, minimizer)?.set;
+        if joining.is_subset(&x) {
+            break StopReason::Converged;
+        }
+        x = x.union(&joining);
+        if x.len() == function.x_size() {
+            break StopReason::Exhausted;
+        }
+    };
+    finish(
+        function,
+        x,
+        lower_bound,
+        (iterations, stop),
+        oracle,
+        minimizer,
+    )
+}
+
+/// Line 5: X ↦ β f(X ∪ before) + f(X ∪ Y).
+struct GrowthObjective<'a, F: ?Sized> {
+    function: &'a F,
+    beta: f64,
+    before: &'a Subset,
+    y: Subset,
+}
+
+impl<F: JointFunction + ?Sized> SetFunction for GrowthObjective<'_, F> {
+    fn ground_size(&self) -> usize {
+        self.function.x_size()
+    }
+
+    fn value(&self, set: &Subset) -> f64 {
+        let nothing = Subset::empty(self.function.y_size());
+        self.beta * self.function.value(&set.union(self.before), &nothing)
+            + self.function.value(set, &self.y)
+    }
+
+    fn as_modular(&self) -> Option<Modular> {
+        let alone = self
+            .function
+            .modular_given_y(&Subset::empty(self.function.y_size()))?;
+        let mut sum = self.function.modular_given_y(&self.y)?;
+        sum.constant += self.beta * alone.value(self.before);
+        for (v, weight) in sum.weights.iter_mut().enumerate() {
+            if !self.before.contains(v) {
+                *weight += self.beta * alone.weights[v];
+            }
+        }
+        Some(sum)
+    }
+}

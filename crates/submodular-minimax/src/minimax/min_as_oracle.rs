@@ -1,0 +1,70 @@
+//! Min-as-Oracle: max-min by maximising g(Y) = min over X of f(X ∪ Y).
+//!
+//! g is submodular if f is jointly submodular, so the maximiser's factor carries over where g is
+//! monotone. Each gain costs one minimisation over X.
+
+use super::solution::{MinimaxError, MinimaxSolution, minimize};
+use super::{Certificate, StopReason};
+use crate::joint_function::{GivenY, JointFunction};
+use crate::maximize::Maximizer;
+use crate::minimize::Minimizer;
+use crate::set_function::SetFunction;
+use crate::subset::Subset;
+
+/// Approximates max over Y of min over X of a jointly submodular f.
+///
+/// The certificate brackets the max-min value: `lower_bound` is what the returned Y guarantees, the
+/// upper bound follows from g's submodularity.
+///
+/// # Errors
+/// Whatever the maximiser or the minimiser reports; a minimiser that fails on some Y makes the gain
+/// NaN, which the maximiser reports.
+pub fn min_as_oracle<F: JointFunction + ?Sized>(
+    function: &F,
+    oracle: &mut dyn Maximizer,
+    minimizer: &dyn Minimizer,
+) -> Result<MinimaxSolution, MinimaxError> {
+    let inner = InnerMinimum {
+        function,
+        minimizer,
+    };
+    let best = oracle.maximize(&inner)?;
+    let reply = minimize(
+        &GivenY {
+            function,
+            y: best.set.clone(),
+        },
+        minimizer,
+    )?;
+    let upper_bound = oracle.constraint().upper_bound(&inner).max(reply.value);
+    Ok(MinimaxSolution {
+        x: reply.set,
+        y: best.set,
+        value: reply.value,
+        iterations: best.picks.len(),
+        stop: StopReason::Converged,
+        certificate: Certificate {
+            lower_bound: reply.lower_bound,
+            upper_bound,
+        },
+    })
+}
+
+struct InnerMinimum<'a, F: ?Sized> {
+    function: &'a F,
+    minimizer: &'a dyn Minimizer,
+}
+
+impl<F: JointFunction + ?Sized> SetFunction for InnerMinimum<'_, F> {
+    fn ground_size(&self) -> usize {
+        self.function.y_size()
+    }
+
+    fn value(&self, set: &Subset) -> f64 {
+        let given = GivenY {
+            function: self.function,
+            y: set.clone(),
+        };
+        minimize(&given, self.minimizer).map_or(f64::NAN, |minimum| minimum.value)
+    }
+}

@@ -1,0 +1,73 @@
+//! Min-by-Singletons: minimise f(X) + Σᵤ f(X ∪ {u}), which bounds every response from above.
+
+use super::solution::{MinimaxError, MinimaxSolution, finish, minimize};
+use crate::StopReason;
+use crate::functions::Modular;
+use crate::joint_function::JointFunction;
+use crate::maximize::Maximizer;
+use crate::minimize::Minimizer;
+use crate::set_function::SetFunction;
+use crate::subset::Subset;
+
+/// An (|N₂| + 1)-approximation of min-max for disjointly submodular f ≥ 0.
+///
+/// `oracle` only answers the final X, for the value and the certificate.
+///
+/// # Errors
+/// Whatever the oracle or the minimiser reports.
+pub fn min_by_singletons<F: JointFunction + ?Sized>(
+    function: &F,
+    oracle: &mut dyn Maximizer,
+    minimizer: &dyn Minimizer,
+) -> Result<MinimaxSolution, MinimaxError> {
+    let least = minimize(&Singletons { function }, minimizer)?;
+    let rounds = (1, StopReason::Converged);
+    finish(
+        function,
+        least.set,
+        f64::NEG_INFINITY,
+        rounds,
+        oracle,
+        minimizer,
+    )
+}
+
+/// h(X) = f(X) + Σ_{u ∈ N₂} f(X ∪ {u}).
+struct Singletons<'a, F: ?Sized> {
+    function: &'a F,
+}
+
+impl<F: JointFunction + ?Sized> Singletons<'_, F> {
+    fn responses(&self) -> impl Iterator<Item = Subset> + '_ {
+        let n2 = self.function.y_size();
+        let alone = (0..n2).map(move |u| Subset::from_indices(n2, [u]));
+        std::iter::once(Subset::empty(n2)).chain(alone)
+    }
+}
+
+impl<F: JointFunction + ?Sized> SetFunction for Singletons<'_, F> {
+    fn ground_size(&self) -> usize {
+        self.function.x_size()
+    }
+
+    fn value(&self, set: &Subset) -> f64 {
+        self.responses().map(|y| self.function.value(set, &y)).sum()
+    }
+
+    fn as_modular(&self) -> Option<Modular> {
+        let n1 = self.function.x_size();
+        let mut sum = Modular {
+            constant: 0.0,
+            weights: vec![0.0; n1],
+        };
+        for y in self.responses() {
+            let part = self.function.modular_given_y(&y)?;
+            sum.constant += part.constant;
+            sum.weights
+                .iter_mut()
+                .zip(&part.weights)
+                .for_each(|(s, p)| *s += p);
+        }
+        Some(sum)
+    }
+}
