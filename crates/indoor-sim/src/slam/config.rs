@@ -10,7 +10,8 @@ use crate::config_error::within;
 pub struct SlamConfig {
     /// Corners that the detector keeps per picture, the strongest first, 50..=100000. ORB-SLAM's usual setting is 1000.
     pub feature_budget: usize,
-    /// Chance that a detected corner is matched to its map point in a picture, 0..=1.
+    /// Chance that a detected corner of middling contrast is matched to its map point in a picture, 0..=1; faint corners are
+    /// matched half as often.
     pub match_chance: f64,
     /// Chance that a pair of keyframes triangulates a corner that both see with enough parallax, 0..=1.
     pub triangulation_chance: f64,
@@ -54,7 +55,7 @@ impl Default for SlamConfig {
             triangulation_chance: 0.6,
             least_parallax: 1.0_f64.to_radians(),
             pixel_noise: 1.5,
-            depth_floor: 0.015,
+            depth_floor: 0.038,
             outlier_rate: 0.10,
             pose_noise: 0.004,
             attitude_noise: 0.15_f64.to_radians(),

@@ -30,7 +30,7 @@ pub(crate) fn detect(
 ) -> Vec<Detection> {
     let center = world_from_camera.translation.vector;
     let camera_from_world = world_from_camera.inverse();
-    let mut seen: Vec<(f64, Detection)> = Vec::new();
+    let mut seen: Vec<Seen> = Vec::new();
     for group in world.groups() {
         if !group.may_be_seen(camera, &camera_from_world) {
             continue;
@@ -41,27 +41,68 @@ pub(crate) fn detect(
             let range = ray.norm();
             let resolved =
                 range >= landmark.near.max(NEAREST) && range <= landmark.far.min(FARTHEST);
+            let in_camera = camera_from_world.rotation * ray;
             if resolved
-                && camera.contains(camera_from_world.rotation * ray)
+                && camera.contains(in_camera)
                 && world.sees_landmark(center.into(), landmark)
             {
-                seen.push((
-                    landmark.strength,
-                    Detection {
-                        landmark: number,
-                        range,
-                    },
-                ));
+                let detection = Detection {
+                    landmark: number,
+                    range,
+                };
+                let (cell, strength) = (cell_of(camera, in_camera), landmark.strength);
+                seen.push(Seen {
+                    cell,
+                    rank: 0,
+                    strength,
+                    detection,
+                });
             }
         }
     }
-    if seen.len() > budget {
-        seen.select_nth_unstable_by(budget, |a, b| {
-            b.0.total_cmp(&a.0).then(a.1.landmark.cmp(&b.1.landmark))
-        });
-        seen.truncate(budget);
-    }
-    let mut detections: Vec<Detection> = seen.into_iter().map(|(_, detection)| detection).collect();
+    spread(&mut seen, budget);
+    let mut detections: Vec<Detection> = seen.into_iter().map(|seen| seen.detection).collect();
     detections.sort_unstable_by_key(|detection| detection.landmark);
     detections
+}
+
+/// A visible landmark before the budget is spent.
+struct Seen {
+    cell: u32,
+    rank: u32,
+    strength: f64,
+    detection: Detection,
+}
+
+/// Cells across and down the picture that share the budget, as detectors spread their corners.
+const CELLS: (f64, f64) = (8.0, 6.0);
+
+fn cell_of(camera: &Camera, in_camera: Vector3<f64>) -> u32 {
+    let place = |value: f64, focal: f64, size: f64, cells: f64| {
+        ((value / in_camera.z * focal / size + 0.5) * cells).clamp(0.0, cells - 1.0) as u32
+    };
+    let column = place(in_camera.x, camera.fx, camera.width, CELLS.0);
+    let row = place(in_camera.y, camera.fy, camera.height, CELLS.1);
+    row * CELLS.0 as u32 + column
+}
+
+/// Keeps `budget` of what is seen: the strongest of each cell, then the second strongest of each, and so on.
+fn spread(seen: &mut Vec<Seen>, budget: usize) {
+    if seen.len() <= budget {
+        return;
+    }
+    let by_strength = |a: &Seen, b: &Seen| {
+        b.strength
+            .total_cmp(&a.strength)
+            .then(a.detection.landmark.cmp(&b.detection.landmark))
+    };
+    seen.sort_unstable_by(|a, b| a.cell.cmp(&b.cell).then(by_strength(a, b)));
+    let (mut cell, mut rank) = (u32::MAX, 0);
+    for one in seen.iter_mut() {
+        rank = if one.cell == cell { rank + 1 } else { 0 };
+        cell = one.cell;
+        one.rank = rank;
+    }
+    seen.select_nth_unstable_by(budget, |a, b| a.rank.cmp(&b.rank).then(by_strength(a, b)));
+    seen.truncate(budget);
 }

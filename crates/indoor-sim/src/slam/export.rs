@@ -16,7 +16,8 @@ impl SyntheticSlam {
             };
         };
         let map_from_space = first.estimate.inverse();
-        let points = self.mapping.points.iter().map(|point| MapPoint {
+        let kept = self.mapping.points.iter().filter(|point| point.kept);
+        let points = kept.map(|point| MapPoint {
             id: PointId(point.id),
             position: self.scaled(map_from_space * Point3::from(point.estimate)),
             viewing_direction: point
@@ -30,6 +31,7 @@ impl SyntheticSlam {
             .frames
             .iter()
             .enumerate()
+            .filter(|(_, frame)| frame.kept)
             .map(|(number, frame)| KeyFrame {
                 id: KeyFrameId(number as u64),
                 time: Some(frame.time),

@@ -19,6 +19,28 @@ pub(crate) struct Frame {
     pub(crate) true_pose: Isometry3<f64>,
     pub(crate) estimate: Isometry3<f64>,
     pub(crate) drift: Drift,
+    /// Points that it observes; a removed keyframe observes none.
+    points: Vec<u32>,
+    /// Whether it is still part of the map.
+    pub(crate) kept: bool,
+}
+
+impl Frame {
+    pub(crate) fn new(
+        time: f64,
+        true_pose: Isometry3<f64>,
+        estimate: Isometry3<f64>,
+        drift: Drift,
+    ) -> Self {
+        Self {
+            time,
+            true_pose,
+            estimate,
+            drift,
+            points: Vec::new(),
+            kept: true,
+        }
+    }
 }
 
 /// One map point.
@@ -33,6 +55,8 @@ pub(crate) struct Point {
     pub(crate) information: Information,
     /// The keyframe whose drift it was made with.
     pub(crate) born: u32,
+    /// Whether it is still part of the map.
+    pub(crate) kept: bool,
     /// For a wrong point: where it would be without drift.
     wrong: Option<Vector3<f64>>,
     draw: Vector3<f64>,
@@ -59,6 +83,19 @@ const MEMORY: usize = 8;
 /// Focal length that turns pixel noise into bearing noise is the camera's; this is the growth per pyramid octave that
 /// corners have on average: between 1 and 1.2⁷.
 const OCTAVE_GROWTH: f64 = 1.5;
+
+/// How many of the newest keyframes are looked at when removing redundant ones.
+const RECENT: u32 = 12;
+
+/// Share of well observed points that makes a keyframe redundant (ORB-SLAM: 0.9).
+const REDUNDANT: f64 = 0.9;
+
+/// A point is well observed with more observers than this. ORB-SLAM: 3 in the same octave or finer; octaves are not
+/// simulated, so the number is raised until the points keep as many observers as on real maps.
+const OTHERS: usize = 5;
+
+/// Corners differ in how well they are localised: the logarithm of a point's share of the noise has this deviation.
+const QUALITY_SPREAD: f64 = 0.6;
 
 impl Mapping {
     pub(crate) fn new(landmarks: usize) -> Self {
@@ -99,7 +136,8 @@ impl Mapping {
                 self.sightings[landmark].push(number);
             }
         }
-        self.cull(number);
+        self.cull_points(number);
+        self.cull_frames(number);
     }
 
     fn add_view(&mut self, index: usize, frame: u32, surroundings: &Surroundings<'_, impl Rng>) {
@@ -107,6 +145,7 @@ impl Mapping {
         let point = &mut self.points[index];
         let place = Vector3::from(surroundings.world.landmarks()[point.landmark as usize].position);
         point.observers.push(KeyFrameId(u64::from(frame)));
+        self.frames[frame as usize].points.push(index as u32);
         point
             .information
             .add_view(place - center, surroundings.bearing_noise());
@@ -135,8 +174,10 @@ impl Mapping {
     ) {
         let place = Vector3::from(surroundings.world.landmarks()[landmark as usize].position);
         let center = self.frames[frame as usize].true_pose.translation.vector;
+        let frames = &self.frames;
+        self.sightings[landmark as usize].retain(|&other| frames[other as usize].kept);
         let wide = |&other: &u32| {
-            let from = self.frames[other as usize].true_pose.translation.vector;
+            let from = frames[other as usize].true_pose.translation.vector;
             parallax(place, from, center) >= surroundings.config.least_parallax
         };
         if !self.sightings[landmark as usize].iter().any(wide) {
@@ -172,7 +213,12 @@ impl Mapping {
             let from = self.frames[observer as usize].true_pose.translation.vector;
             information.add_view(place - from, surroundings.bearing_noise());
         }
-        self.owner[landmark as usize] = self.points.len() as u32;
+        let quality = (QUALITY_SPREAD * normal(surroundings.rng)).exp();
+        let index = self.points.len() as u32;
+        self.owner[landmark as usize] = index;
+        for &observer in &observers {
+            self.frames[observer as usize].points.push(index);
+        }
         self.points.push(Point {
             id: self.next_id,
             landmark,
@@ -184,9 +230,10 @@ impl Mapping {
             estimate: Vector3::zeros(),
             information,
             born: frame,
+            kept: true,
             wrong: wrong.map(|(ray, _)| center + ray),
-            draw: normal3(surroundings.rng),
-            floor_draw: normal(surroundings.rng),
+            draw: normal3(surroundings.rng) * quality,
+            floor_draw: normal(surroundings.rng) * quality,
         });
         self.next_id += 1;
         self.settle(self.points.len() - 1, surroundings);
@@ -218,23 +265,60 @@ impl Mapping {
         }
     }
 
-    /// Removes points that two keyframes after their birth still have two observers or fewer, as ORB-SLAM does.
-    fn cull(&mut self, newest: u32) {
-        let probation = newest.saturating_sub(2);
-        let mut index = self.points.len();
-        while index > 0 {
-            index -= 1;
-            let point = &self.points[index];
-            if point.born + 3 < probation {
+    /// Removes the points born two keyframes ago that still have two observers or fewer, as ORB-SLAM does.
+    fn cull_points(&mut self, newest: u32) {
+        let Some(probation) = newest.checked_sub(2) else {
+            return;
+        };
+        for index in (0..self.points.len()).rev() {
+            let point = &mut self.points[index];
+            if point.born < probation {
                 break;
             }
-            if point.born == probation && point.observers.len() <= 2 {
+            if point.kept && point.born == probation && point.observers.len() <= 2 {
+                point.kept = false;
                 self.owner[point.landmark as usize] = NONE;
-                self.points.remove(index);
-                for later in &self.points[index..] {
-                    self.owner[later.landmark as usize] -= 1;
+                for observer in core::mem::take(&mut point.observers) {
+                    self.frames[observer.0 as usize]
+                        .points
+                        .retain(|&other| other != index as u32);
                 }
             }
+        }
+    }
+
+    fn remove_point(&mut self, index: u32) {
+        let point = &mut self.points[index as usize];
+        point.kept = false;
+        self.owner[point.landmark as usize] = NONE;
+        for observer in core::mem::take(&mut point.observers) {
+            self.frames[observer.0 as usize]
+                .points
+                .retain(|&other| other != index);
+        }
+    }
+
+    /// Removes the recent keyframes that are redundant: nine tenths of their points are well observed without them.
+    fn cull_frames(&mut self, newest: u32) {
+        let oldest = newest.saturating_sub(RECENT).max(2);
+        for number in oldest..newest.saturating_sub(1) {
+            let frame = &self.frames[number as usize];
+            let seen = |&&index: &&u32| self.points[index as usize].observers.len() > OTHERS;
+            let redundant = frame.points.iter().filter(seen).count();
+            if frame.kept && redundant as f64 > REDUNDANT * frame.points.len() as f64 {
+                self.remove_frame(number);
+            }
+        }
+    }
+
+    fn remove_frame(&mut self, number: u32) {
+        let frame = &mut self.frames[number as usize];
+        frame.kept = false;
+        let id = KeyFrameId(u64::from(number));
+        for index in core::mem::take(&mut frame.points) {
+            self.points[index as usize]
+                .observers
+                .retain(|&observer| observer != id);
         }
     }
 

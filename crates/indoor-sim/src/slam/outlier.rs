@@ -9,7 +9,7 @@ use crate::random::{normal3, uniform};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Outlier {
-    /// On the viewing ray, at 0.25 to 0.85 or 1.2 to 2.5 times the true distance.
+    /// On the viewing ray, at 0.12 to 0.78 or 1.2 to 2.5 times the true distance.
     AlongRay,
     /// Near other wrong points, in a small clump.
     Clump,
@@ -63,11 +63,13 @@ impl Outliers {
     }
 }
 
-/// A wrong depth relative to the true one.
+/// A wrong depth relative to the true one. On the kitchen map 59 % of the wrong points are too near, by factors spread
+/// evenly from 0.12 to 0.78; the others are too far by 1.2 and an exponential tail.
 fn wrong_depth(rng: &mut impl Rng) -> f64 {
-    if rng.random::<bool>() {
-        uniform(rng, 0.25, 0.85)
+    if rng.random::<f64>() < 0.59 {
+        uniform(rng, 0.12, 0.78)
     } else {
-        uniform(rng, 1.2, 2.5)
+        let tail = -0.2 * (1.0 - rng.random::<f64>()).ln();
+        (1.2 + tail).min(2.5)
     }
 }

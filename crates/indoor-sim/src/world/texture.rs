@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::floor_plan::FloorPlan;
+use super::floor_plan::{FloorPlan, Room};
 use super::landmark::Landmark;
 use super::solid::{Solid, SolidKind};
 use crate::random::uniform;
@@ -10,7 +10,7 @@ use crate::random::uniform;
 /// Densities of the paint. Calibrated against real maps (see the crate's documentation), not measured on surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureConfig {
-    /// Share of wall panels (pieces of a wall about 1.3 m wide) without any texture, 0..=1.
+    /// Share of wall panels (pieces of a wall about 1 m wide) without any texture, 0..=0.5.
     pub blank_share: f64,
     /// Landmarks per square metre on panels that are not blank, outside of patches.
     pub background: f64,
@@ -29,9 +29,9 @@ pub struct TextureConfig {
 impl Default for TextureConfig {
     fn default() -> Self {
         Self {
-            blank_share: 0.4,
-            background: 60.0,
-            patch: 900.0,
+            blank_share: 0.35,
+            background: 110.0,
+            patch: 850.0,
             furniture: 380.0,
             floor: 25.0,
             ceiling: 5.0,
@@ -143,31 +143,45 @@ impl<R: Rng> Painter<'_, R> {
         let horizontal = usize::from(face.axes()[0] == 2);
         let vertical = 1 - horizontal;
         let length = face.high[horizontal] - face.low[horizontal];
-        let panels = (length / 1.3).ceil().max(1.0);
+        let panels = length.ceil().max(1.0);
         let mut blank = false;
         for number in 0..panels as usize {
             let (mut low, mut high) = (face.low, face.high);
             low[horizontal] = face.low[horizontal] + length * number as f64 / panels;
             high[horizontal] = face.low[horizontal] + length * (number + 1) as f64 / panels;
-            // Blank panels seldom stand side by side: people hang something on an empty wall.
-            let chance = if blank { 0.5 } else { 1.25 } * self.config.blank_share;
+            // Never two side by side: people hang something on an empty wall. The chance keeps the share as asked.
+            let chance = if blank {
+                0.0
+            } else {
+                odds(self.config.blank_share)
+            };
             blank = self.rng.random::<f64>() < chance;
-            let vivid = uniform(self.rng, 0.4, 1.6);
-            let has_patch = self.rng.random::<f64>() < 0.85;
+            let vivid = uniform(self.rng, 0.6, 1.4);
             let panel = face.part(low, high);
             if blank {
                 continue;
             }
+            let vivid = vivid * self.room_texture(&panel);
             self.scatter(&panel, self.config.background * vivid);
-            if has_patch {
-                self.paint_patch(&panel, horizontal, vertical, vivid);
-            }
+            self.paint_patch(&panel, horizontal, vertical, vivid);
         }
+    }
+
+    /// Texture of the room that a panel faces; 1 when it faces none.
+    fn room_texture(&self, panel: &Face) -> f64 {
+        let mut middle = panel.point([0, 1].map(|side| 0.5 * (panel.low[side] + panel.high[side])));
+        middle[panel.axis] += 0.05 * panel.outward;
+        let faced = self
+            .plan
+            .rooms
+            .iter()
+            .find(|room| room_contains(room, middle));
+        faced.map_or(1.0, |room| room.texture)
     }
 
     /// A picture, a shelf or a window somewhere on a panel.
     fn paint_patch(&mut self, panel: &Face, horizontal: usize, vertical: usize, vivid: f64) {
-        let size = [uniform(self.rng, 0.35, 1.1), uniform(self.rng, 0.35, 1.2)];
+        let size = [uniform(self.rng, 0.3, 1.0), uniform(self.rng, 0.4, 1.3)];
         let (mut low, mut high) = (panel.low, panel.high);
         for (axis, size) in [(horizontal, size[0]), (vertical, size[1])] {
             let room = panel.high[axis] - panel.low[axis];
@@ -195,7 +209,7 @@ impl<R: Rng> Painter<'_, R> {
     fn paint_by_room(&mut self, face: &Face, density: f64) {
         for room in &self.plan.rooms {
             let [u, v] = face.axes();
-            let vivid = uniform(self.rng, 0.3, 1.7);
+            let vivid = uniform(self.rng, 0.3, 1.7) * room.texture;
             let part = face.part([room.min[u], room.min[v]], [room.max[u], room.max[v]]);
             self.scatter(&part, density * vivid);
         }
@@ -295,19 +309,32 @@ impl<R: Rng> Painter<'_, R> {
     }
 
     fn faces_a_room(&self, point: [f64; 3]) -> bool {
-        let inside = |low: f64, value: f64, high: f64| low <= value && value <= high;
         point[2] > 0.0
             && point[2] < self.plan.height
-            && self.plan.rooms.iter().any(|room| {
-                inside(room.min[0], point[0], room.max[0])
-                    && inside(room.min[1], point[1], room.max[1])
-            })
+            && self
+                .plan
+                .rooms
+                .iter()
+                .any(|room| room_contains(room, point))
     }
 
     /// A whole number with the given mean.
     fn whole(&mut self, mean: f64) -> usize {
         let part = self.rng.random::<f64>();
         (mean.clamp(0.0, 1e6) + part).floor() as usize
+    }
+}
+
+fn room_contains(room: &Room, point: [f64; 3]) -> bool {
+    (0..2).all(|axis| room.min[axis] <= point[axis] && point[axis] <= room.max[axis])
+}
+
+/// The odds of a chance, at most 1.
+fn odds(chance: f64) -> f64 {
+    if chance >= 0.5 {
+        1.0
+    } else {
+        chance / (1.0 - chance)
     }
 }
 
