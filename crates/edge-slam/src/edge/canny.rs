@@ -103,7 +103,7 @@ impl CannyConfig {
 pub struct EdgeMap {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// [`EDGE`] where there is one.
+    /// [`EDGE`] where there is one; with a margin of one pixel all around.
     pub(super) class: Vec<u8>,
     pub(super) gradient: Gradient,
     pub(super) norm: Norm,
@@ -125,7 +125,7 @@ impl EdgeMap {
     /// Whether a pixel is an edge; outside the image it is not.
     #[must_use]
     pub fn is_edge(&self, x: usize, y: usize) -> bool {
-        x < self.width && y < self.height && self.class[y * self.width + x] == EDGE
+        x < self.width && y < self.height && self.class[(y + 1) * (self.width + 2) + x + 1] == EDGE
     }
 
     /// How many edge pixels there are. Cost: O(pixels).
@@ -178,9 +178,14 @@ pub fn canny(view: &GrayView<'_>, config: &CannyConfig) -> Result<EdgeMap, Canny
     } else {
         sobel(view)
     };
-    let (low, high) = limits(config, &gradient);
-    let mut class = thin(&gradient, width, height, config.norm, low, high);
-    keep_connected(&mut class, width);
+    let mut class = thin(
+        &gradient,
+        width,
+        height,
+        config.norm,
+        limits(config, &gradient),
+    );
+    keep_connected(&mut class, width + 2);
     Ok(EdgeMap {
         width,
         height,
@@ -203,7 +208,7 @@ fn strength(gx: i32, gy: i32, norm: Norm) -> i32 {
     clippy::cast_possible_truncation,
     reason = "clamped; float to integer saturates"
 )]
-fn limits(config: &CannyConfig, gradient: &Gradient) -> (i32, i32) {
+fn limits(config: &CannyConfig, gradient: &Gradient) -> [i32; 2] {
     let (low, high) = match config.thresholds {
         Thresholds::Fixed { low, high } => (low, high),
         Thresholds::Median { factor, ratio } => {
@@ -215,7 +220,7 @@ fn limits(config: &CannyConfig, gradient: &Gradient) -> (i32, i32) {
         Norm::L1 => value.floor() as i32,
         Norm::L2 => (value * value).floor() as i32,
     };
-    (unit(low), unit(high))
+    [unit(low), unit(high)]
 }
 
 /// Median of the strengths that are not zero; 0 when all are. A histogram of whole Sobel units.
@@ -246,46 +251,47 @@ fn median_strength(gradient: &Gradient, norm: Norm) -> f64 {
     middle.unwrap_or(0) as f64
 }
 
-/// The class of each pixel: nothing, weak or strong.
-fn thin(
-    gradient: &Gradient,
-    width: usize,
-    height: usize,
-    norm: Norm,
-    low: i32,
-    high: i32,
-) -> Vec<u8> {
-    let mut class = vec![NONE; width * height];
-    // Strengths of the row above, here and below, with a margin of zeros all around.
+/// The class of each pixel, nothing, weak or strong, with a margin of one pixel of nothing all around.
+fn thin(gradient: &Gradient, width: usize, height: usize, norm: Norm, limits: [i32; 2]) -> Vec<u8> {
+    let mut class = vec![NONE; (width + 2) * (height + 2)];
+    // Strengths of the row above, here and below, with a margin of zeros as well.
     let mut lines = [
         vec![0_i32; width + 2],
         vec![0_i32; width + 2],
         vec![0_i32; width + 2],
     ];
-    let row = |line: &[i16], y: usize| y * width..y * width + line.len().min(width);
-    widest(|| {
-        let fill = |y: usize, line: &mut [i32]| {
-            if y >= height {
-                line.fill(0);
-                return;
-            }
-            let span = row(&gradient.across, y);
-            let (gx, gy) = (&gradient.across[span.clone()], &gradient.down[span]);
-            for ((to, &gx), &gy) in line[1..=width].iter_mut().zip(gx).zip(gy) {
-                *to = strength(i32::from(gx), i32::from(gy), norm);
-            }
-        };
-        fill(0, &mut lines[1]);
-        for y in 0..height {
-            fill(y + 1, &mut lines[2]);
-            let span = row(&gradient.across, y);
-            let sides = [&lines[0], &lines[1], &lines[2]];
-            let (gx, gy) = (&gradient.across[span.clone()], &gradient.down[span.clone()]);
-            thin_row(sides, gx, gy, [low, high], &mut class[span]);
-            lines.rotate_left(1);
+    let row = |y: usize| {
+        let span = y * width..(y + 1) * width;
+        (&gradient.across[span.clone()], &gradient.down[span])
+    };
+    fill(row(0), norm, &mut lines[1][1..=width]);
+    for y in 0..height {
+        if y + 1 < height {
+            fill(row(y + 1), norm, &mut lines[2][1..=width]);
+        } else {
+            lines[2].fill(0);
         }
-    });
+        let (gx, gy) = row(y);
+        let start = (y + 1) * (width + 2) + 1;
+        let target = &mut class[start..start + width];
+        widest(|| thin_row([&lines[0], &lines[1], &lines[2]], gx, gy, limits, target));
+        lines.rotate_left(1);
+    }
     class
+}
+
+fn fill((gx, gy): (&[i16], &[i16]), norm: Norm, line: &mut [i32]) {
+    match norm {
+        Norm::L1 => widest(|| fill_as(gx, gy, Norm::L1, line)),
+        Norm::L2 => widest(|| fill_as(gx, gy, Norm::L2, line)),
+    }
+}
+
+#[inline(always)]
+fn fill_as(gx: &[i16], gy: &[i16], norm: Norm, line: &mut [i32]) {
+    for ((to, &gx), &gy) in line.iter_mut().zip(gx).zip(gy) {
+        *to = strength(i32::from(gx), i32::from(gy), norm);
+    }
 }
 
 #[inline(always)]
@@ -319,30 +325,41 @@ fn thirds(line: &[i32], n: usize) -> [&[i32]; 3] {
     [&line[..n], &line[1..=n], &line[2..n + 2]]
 }
 
-/// Turns strong pixels and the weak ones connected to them (8 neighbours) into edges, clears the others.
-fn keep_connected(class: &mut [u8], width: usize) {
+/// Turns strong pixels and the weak ones connected to them (8 neighbours) into edges; others stay weak.
+fn keep_connected(class: &mut [u8], stride: usize) {
     let mut stack = Vec::new();
-    for start in 0..class.len() {
-        if class[start] != STRONG {
+    for word in 0..class.len().div_ceil(8) {
+        let span = word * 8..(word * 8 + 8).min(class.len());
+        // Most stretches are empty: one test for eight pixels.
+        if class[span.clone()]
+            .iter()
+            .fold(0, |all, &value| all | value)
+            & STRONG
+            == 0
+        {
             continue;
         }
-        class[start] = EDGE;
-        stack.push(start);
-        while let Some(index) = stack.pop() {
-            let (x, y) = (index % width, index / width);
-            for row in y.saturating_sub(1)..=y + 1 {
-                for column in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                    let near = row * width + column;
-                    if near < class.len() && (class[near] == WEAK || class[near] == STRONG) {
-                        class[near] = EDGE;
-                        stack.push(near);
-                    }
-                }
+        for start in span {
+            if class[start] == STRONG {
+                class[start] = EDGE;
+                stack.push(start);
+                flood(class, stride, &mut stack);
             }
         }
     }
-    for value in class.iter_mut() {
-        *value = if *value == EDGE { EDGE } else { NONE };
+}
+
+fn flood(class: &mut [u8], stride: usize, stack: &mut Vec<usize>) {
+    while let Some(index) = stack.pop() {
+        // The margin is never an edge, so that the three rows around an edge exist.
+        for first in [index - stride - 1, index - 1, index + stride - 1] {
+            for (k, value) in class[first..first + 3].iter_mut().enumerate() {
+                if *value == WEAK || *value == STRONG {
+                    *value = EDGE;
+                    stack.push(first + k);
+                }
+            }
+        }
     }
 }
 
