@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn draw(raw: &Path<2>, refined: &Path<2>) -> Result<(), rrt_refine::PathError> {
     let mut map = vec![vec![' '; 61]; 21];
     let mut mark = |[x, y]: [f64; 2], sign| {
-        map[20 - (y * 2.0).round() as usize][(x * 5.0).round() as usize] = sign
+        map[20 - (y * 2.0).round() as usize][(x * 5.0).round() as usize] = sign;
     };
     for (x, [low, high]) in WALLS {
         for step in 0..=20 {

@@ -16,6 +16,8 @@ use rrt_refine::refine::{
 };
 use rrt_refine::{Path, RrtConfig, rrt};
 
+type Refiner<'a> = Box<dyn Fn(&Path<2>) -> Refined<2> + 'a>;
+
 /// A free path through a random world, as RRT leaves it.
 fn raw_path(seed: u64) -> Option<(DiscWorld, Path<2>)> {
     let (world, start, goal) = DiscWorld::random(seed, 20.0, 55);
@@ -60,7 +62,7 @@ proptest! {
         let cost = ClearanceCost { comfort: 0.5, weight: 5.0, spacing: 0.2 };
         let rope_config = RopeConfig::default();
         let taut_config = TautConfig { max_rounds: 60, ..Default::default() };
-        let all: [(&str, Box<dyn Fn(&Path<2>) -> Refined<2>>); 6] = [
+        let all: [(&str, Refiner<'_>); 6] = [
             ("dag", Box::new(|p| dag(p, &free))),
             ("dag_by_cost", Box::new(|p| dag_by_cost(p, &free, &|a, b| cost.of(a, b, &off)))),
             ("greedy", Box::new(|p| greedy(p, &free))),

@@ -1,6 +1,10 @@
 //! A world of boxes for a ball-shaped vehicle, checked exactly, and the recorded apartment as such a world.
 
-#![allow(clippy::expect_used, clippy::print_stdout, reason = "a broken expectation must fail the test")]
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a broken expectation must fail the test"
+)]
 
 use std::path::PathBuf;
 
@@ -19,17 +23,15 @@ impl BoxWorld {
     /// Distance from the motion to the nearest box must exceed the radius: the swept ball, exactly.
     pub(crate) fn is_free(&self, from: &[f64; 3], to: &[f64; 3]) -> bool {
         let limit = self.radius * self.radius;
-        self.boxes
-            .iter()
-            .all(|(min, max)| far_apart(from, to, min, max, self.radius) || squared_gap(from, to, min, max) > limit)
+        self.boxes.iter().all(|(min, max)| {
+            far_apart(from, to, min, max, self.radius) || squared_gap(from, to, min, max) > limit
+        })
     }
 }
 
 /// Cheap rejection: a plane of an axis separates the two by more than the radius.
 fn far_apart(from: &[f64; 3], to: &[f64; 3], min: &[f64; 3], max: &[f64; 3], radius: f64) -> bool {
-    (0..3).any(|k| {
-        from[k].min(to[k]) - max[k] > radius || min[k] - from[k].max(to[k]) > radius
-    })
+    (0..3).any(|k| from[k].min(to[k]) - max[k] > radius || min[k] - from[k].max(to[k]) > radius)
 }
 
 /// Squared distance between a segment and a box: along the segment it is convex and quadratic between the places where a
@@ -45,14 +47,23 @@ pub(crate) fn squared_gap(from: &[f64; 3], to: &[f64; 3], min: &[f64; 3], max: &
         }
     }
     cuts.sort_by(f64::total_cmp);
-    let mut best = cuts.iter().map(|&t| squared_at(from, to, min, max, t)).fold(f64::INFINITY, f64::min);
+    let mut best = cuts
+        .iter()
+        .map(|&t| squared_at(from, to, min, max, t))
+        .fold(f64::INFINITY, f64::min);
     for pair in cuts.windows(2) {
         // On this piece the sum of (a + b t)² over the axes outside their interval.
         let (mut ab, mut bb) = (0.0, 0.0);
         for k in 0..3 {
             let (speed, middle) = (to[k] - from[k], (pair[0] + pair[1]) / 2.0);
             let here = from[k] + speed * middle;
-            let side = if here < min[k] { min[k] } else if here > max[k] { max[k] } else { continue };
+            let side = if here < min[k] {
+                min[k]
+            } else if here > max[k] {
+                max[k]
+            } else {
+                continue;
+            };
             ab += (from[k] - side) * speed;
             bb += speed * speed;
         }
@@ -79,7 +90,10 @@ pub(crate) fn apartment() -> Option<(BoxWorld, Vec<[[f64; 3]; 2]>)> {
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
     let file = PathBuf::from(folder).join("data/synthetic-apartment/apt_10k_o15.scene.json");
     let Ok(text) = std::fs::read_to_string(&file) else {
-        println!("skipped: {} is not there (set EXPLORER_DATA)", file.display());
+        println!(
+            "skipped: {} is not there (set EXPLORER_DATA)",
+            file.display()
+        );
         return None;
     };
     let scene: Value = serde_json::from_str(&text).expect("the scene is JSON");
@@ -98,7 +112,10 @@ pub(crate) fn apartment() -> Option<(BoxWorld, Vec<[[f64; 3]; 2]>)> {
         let v = numbers(value);
         [v[0], v[1], v[2]]
     };
-    let queries = list(&scene["queries"]).iter().map(|q| [point(&q[0]), point(&q[1])]).collect();
+    let queries = list(&scene["queries"])
+        .iter()
+        .map(|q| [point(&q[0]), point(&q[1])])
+        .collect();
     Some((world, queries))
 }
 
@@ -107,5 +124,8 @@ fn list(value: &Value) -> &Vec<Value> {
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
-    list(value).iter().map(|v| v.as_f64().expect("a number")).collect()
+    list(value)
+        .iter()
+        .map(|v| v.as_f64().expect("a number"))
+        .collect()
 }
