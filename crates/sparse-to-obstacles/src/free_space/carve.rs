@@ -7,6 +7,7 @@
 use super::config::FreeSpaceConfig;
 use super::evidence::{Evidence, KeyframeId};
 use super::grid::Grid;
+use super::interpolate;
 use super::ray::Ray;
 use crate::vector::{Vec3, distance, dot, lerp, norm_squared, scale, sub};
 
@@ -42,26 +43,34 @@ impl<'a> Carver<'a> {
         {
             self.evidence[index].end();
         }
-        let carved = (length * (1.0 - self.config.range_margin)).min(self.config.max_range);
+        let carved = self.config.carved_length(length);
         if carved <= 0.0 || !length.is_finite() {
             return;
         }
         let end = lerp(ray.origin, ray.end, carved / length);
-        self.follow(ray.origin, end, keyframe);
+        let number = *self.rays;
+        self.follow(ray.origin, end, |voxel| voxel.cross(keyframe, number));
         let widening = self.config.patch_half_angle.tan();
         if carved * widening > 0.5 * self.grid.resolution {
             self.widen(ray.origin, end, widening, keyframe);
         }
     }
 
-    fn cross(&mut self, cell: [i64; 3], keyframe: KeyframeId) {
-        if let Some(index) = self.grid.index(cell) {
-            self.evidence[index].cross(keyframe, *self.rays);
+    /// Carves what lies between neighbouring rays of one keyframe.
+    pub(super) fn carve_between(&mut self, rays: &[Ray], keyframe: KeyframeId) {
+        if self.config.max_triangle_angle <= 0.0 {
+            return;
         }
+        let config = self.config;
+        interpolate::between(rays, config, |places| {
+            for place in places {
+                self.follow(place.origin, place.end, |voxel| voxel.witness(keyframe));
+            }
+        });
     }
 
     /// Marks the voxels along a segment.
-    fn follow(&mut self, from: Vec3, to: Vec3, keyframe: KeyframeId) {
+    fn follow(&mut self, from: Vec3, to: Vec3, mut mark: impl FnMut(&mut Evidence)) {
         let resolution = self.grid.resolution;
         let mut cell = self.grid.cell_of(from);
         let last = self.grid.cell_of(to);
@@ -79,19 +88,27 @@ impl<'a> Carver<'a> {
                 stride[axis] = resolution / along[axis].abs();
             }
         }
-        self.cross(cell, keyframe);
-        for _ in 0..left {
+        // Both ends lie in the grid, and so does all between them.
+        let Some(index) = self.grid.index(cell) else {
+            return;
+        };
+        let mut index = index as isize;
+        let strides = self.grid.strides().map(|stride| stride as isize);
+        for _ in 0..=left {
+            if let Some(voxel) = self.evidence.get_mut(index as usize) {
+                mark(voxel);
+            }
             let mut axis = if next[0] <= next[1] { 0 } else { 1 };
             if next[2] < next[axis] {
                 axis = 2;
             }
             cell[axis] += step[axis];
+            index += strides[axis] * step[axis] as isize;
             next[axis] = if cell[axis] == last[axis] {
                 f64::INFINITY
             } else {
                 next[axis] + stride[axis]
             };
-            self.cross(cell, keyframe);
         }
     }
 
@@ -132,7 +149,9 @@ impl<'a> Carver<'a> {
                     let aside = norm_squared(sub(offset, scale(along, share)));
                     let radius_squared = (widening * share).powi(2) * length_squared;
                     if (0.0..=1.0).contains(&share) && aside <= radius_squared {
-                        self.cross(cell, keyframe);
+                        if let Some(index) = self.grid.index(cell) {
+                            self.evidence[index].cross(keyframe, *self.rays);
+                        }
                     }
                 }
             }

@@ -21,7 +21,7 @@ impl DistanceField {
         let mut field: Vec<u16> = (0..grid.len())
             .map(|index| if marked(index) { 0 } else { FAR })
             .collect();
-        let strides = [grid.size[1] * grid.size[2], grid.size[2], 1];
+        let strides = grid.strides();
         let mut line = Vec::new();
         for axis in [2, 1, 0] {
             let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);

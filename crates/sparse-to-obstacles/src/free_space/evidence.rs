@@ -31,6 +31,12 @@ impl Evidence {
         }
         self.last_ray = ray;
         self.crossed = self.crossed.saturating_add(1);
+        self.witness(keyframe);
+    }
+
+    /// Remembers a keyframe that saw through.
+    #[inline]
+    pub(super) fn witness(&mut self, keyframe: KeyframeId) {
         for witness in &mut self.witnesses {
             if *witness == keyframe {
                 return;
@@ -97,4 +103,16 @@ impl Keyframes {
         }
         Ok(ids)
     }
+}
+
+/// The rays of each keyframe, in their order.
+pub(super) fn by_keyframe(
+    rays: &[Ray],
+    ids: &[KeyframeId],
+) -> impl Iterator<Item = (KeyframeId, Vec<Ray>)> {
+    let mut groups: BTreeMap<KeyframeId, Vec<Ray>> = BTreeMap::new();
+    for (ray, &id) in rays.iter().zip(ids) {
+        groups.entry(id).or_default().push(*ray);
+    }
+    groups.into_iter()
 }

@@ -30,6 +30,11 @@ impl Grid {
         self.size[0] * self.size[1] * self.size[2]
     }
 
+    /// How far apart the indices of neighbours along each axis are.
+    pub(super) fn strides(&self) -> [usize; 3] {
+        [self.size[1] * self.size[2], self.size[2], 1]
+    }
+
     /// The grid that also holds the box from `low` to `high`.
     pub(super) fn grown(
         &self,

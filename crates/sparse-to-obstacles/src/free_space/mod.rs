@@ -7,6 +7,7 @@ mod error;
 mod evidence;
 mod frontier;
 mod grid;
+mod interpolate;
 mod query;
 mod ray;
 mod surface;
@@ -117,8 +118,11 @@ impl FreeSpace {
         self.reserve(rays.iter().flat_map(|ray| [ray.origin, config.reach(ray)]))?;
         self.keyframes = keyframes;
         let mut carver = Carver::new(&config, &self.grid, &mut self.evidence, &mut self.rays);
-        for (ray, keyframe) in rays.iter().zip(ids) {
+        for (ray, &keyframe) in rays.iter().zip(&ids) {
             carver.carve(ray, keyframe);
+        }
+        for (keyframe, rays) in evidence::by_keyframe(&rays, &ids) {
+            carver.carve_between(&rays, keyframe);
         }
         let presence = &self.presence;
         let stands = |point: &Vec3| !presence.iter().any(|&ball| contains(ball, *point));

@@ -2,7 +2,9 @@
 
 use super::accelerated::Accelerated;
 use super::lloyd::Lloyd;
-use super::{Clustering, KMeansConfig, KMeansMethod, KMeansStop, inertia, mini_batch, repair};
+use super::{
+    Clustering, KMeansConfig, KMeansMethod, KMeansStop, inertia, mini_batch, repair, swap,
+};
 use crate::vector::{Vec3, distance_squared, sub};
 use rand::Rng;
 
@@ -21,23 +23,24 @@ pub(super) fn run(
     config: &KMeansConfig,
     rng: &mut impl Rng,
 ) -> Clustering {
-    match config.method {
-        KMeansMethod::Lloyd => refine(points, seeds, config, Lloyd),
-        KMeansMethod::Accelerated => refine(points, seeds, config, Accelerated::new(points.len())),
-        KMeansMethod::MiniBatch { batch } => {
-            let (centroids, batches, stop) = mini_batch::run(points, seeds, batch, config, rng);
-            let once = KMeansConfig {
-                max_iterations: 1,
-                ..config.clone()
-            };
-            let exact = refine(points, centroids, &once, Accelerated::new(points.len()));
-            Clustering {
-                iterations: batches,
-                stop,
-                ..exact
-            }
-        }
+    let exact = |centroids: Vec<Vec3>| match config.method {
+        KMeansMethod::Lloyd => refine(points, centroids, config, Lloyd),
+        _ => refine(points, centroids, config, Accelerated::new(points.len())),
+    };
+    if let KMeansMethod::MiniBatch { batch } = config.method {
+        let (centroids, batches, stop) = mini_batch::run(points, seeds, batch, config, rng);
+        let once = KMeansConfig {
+            max_iterations: 1,
+            ..config.clone()
+        };
+        let last = refine(points, centroids, &once, Accelerated::new(points.len()));
+        return Clustering {
+            iterations: batches,
+            stop,
+            ..last
+        };
     }
+    swap::improve(points, exact(seeds), config.swap_rounds, exact)
 }
 
 fn refine(

@@ -9,6 +9,7 @@ mod mini_batch;
 mod plus_plus;
 mod repair;
 mod scalable;
+mod swap;
 mod tree;
 
 pub use config::{KMeansConfig, KMeansMethod, KMeansSeeding};

@@ -26,6 +26,7 @@ fn config(clusters: usize) -> KMeansConfig {
     KMeansConfig {
         clusters,
         tolerance: 0.0,
+        swap_rounds: 0,
         ..KMeansConfig::default()
     }
 }
@@ -202,6 +203,26 @@ fn wrong_input_is_refused_with_numbers() {
         },
     ] {
         assert!(run(&points, wrong).is_err());
+    }
+}
+
+#[test]
+fn swaps_only_lower_the_inertia_and_keep_the_methods_equal() {
+    let points = spread(900, 11);
+    let mut last = f64::INFINITY;
+    for swap_rounds in 0..5 {
+        let config = KMeansConfig {
+            swap_rounds,
+            ..config(40)
+        };
+        let lloyd = KMeansConfig {
+            method: KMeansMethod::Lloyd,
+            ..config.clone()
+        };
+        let fast = kmeans(&points, &config, &mut rng(1)).unwrap();
+        assert_eq!(fast, kmeans(&points, &lloyd, &mut rng(1)).unwrap());
+        assert!(fast.inertia <= last);
+        last = fast.inertia;
     }
 }
 
