@@ -23,7 +23,7 @@ async function main() {
     const answered = async count => {
         while (said.length < count) await new Promise(resolve => setTimeout(resolve, 20));
     };
-    const steps = [["takeoff"], ["forward", { value: 50 }], ["clockwise", { value: 90 }], ["land"]];
+    const steps = [["takeoff"], ["forward", { value: 50 }], ["cw", { value: 90 }], ["land"]];
     for (const [index, [command, options]] of steps.entries()) {
         await drone.send(command, options);
         await answered(index + 1);

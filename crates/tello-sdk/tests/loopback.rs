@@ -5,8 +5,8 @@
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use tello_sdk::emulator::udp::{ServeConfig, serve};
-use tello_sdk::emulator::{EmulatorConfig, Timing};
+use tello_sdk::emulator::udp::{ServeConfig, serve, serve_with_cameras};
+use tello_sdk::emulator::{EmulatorConfig, Timing, VideoSource};
 use tello_sdk::*;
 
 fn free_port(ip: Ipv4Addr) -> u16 {
@@ -126,4 +126,73 @@ fn a_port_in_use_is_named() {
     assert!(
         matches!(error, ConnectError::Bind { address, .. } if address == taken.local_addr().unwrap())
     );
+}
+
+/// Units of the real sizes, each with its number, every thirtieth a key frame.
+struct Numbers(u32);
+
+impl VideoSource for Numbers {
+    fn next_unit(&mut self, _now: Duration) -> Option<Vec<u8>> {
+        let is_key = self.0.is_multiple_of(30);
+        let mut unit = Vec::new();
+        if is_key {
+            unit.extend([0, 0, 0, 1, 0x67, 1, 2, 3, 0, 0, 0, 1, 0x68, 1, 2, 3]);
+        }
+        unit.extend([0, 0, 0, 1, if is_key { 0x65 } else { 0x61 }, 0x88]);
+        unit.extend(self.0.to_be_bytes().map(|byte| byte | 0x80));
+        unit.resize(if is_key { 35_000 } else { 10_000 }, 7);
+        self.0 += 1;
+        Some(unit)
+    }
+}
+
+#[test]
+fn video_comes_without_loss_and_fresh() {
+    let address = Ipv4Addr::new(127, 0, 0, 26);
+    let video = VideoConfig {
+        bind: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
+        ..VideoConfig::default()
+    };
+    let stream = VideoStream::open(VideoConfig {
+        drone: Some(address.into()),
+        ..video
+    })
+    .unwrap();
+    let state_port = free_port(Ipv4Addr::LOCALHOST);
+    let video_port = stream.local_address().port();
+    let drone = EmulatorConfig {
+        timing: Timing::fast(),
+        state_port,
+        video_port,
+        ..EmulatorConfig::default()
+    };
+    let config = ServeConfig {
+        address,
+        command_port: free_port(address),
+        count: 1,
+        drone,
+    };
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope
+            .spawn(|| serve_with_cameras(&config, &|_| Some(Box::new(Numbers(0))), &stop).unwrap());
+        let client = DroneConfig {
+            drone: SocketAddr::from((address, config.command_port)),
+            command_bind: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
+            state_bind: SocketAddr::from((Ipv4Addr::LOCALHOST, state_port)),
+            ..DroneConfig::default()
+        };
+        let drone = Drone::connect(client).unwrap();
+        drone.execute(Command::StreamOn).unwrap();
+        let units: Vec<_> = (0..45)
+            .map_while(|_| stream.next(Duration::from_secs(2)))
+            .collect();
+        let newest = stream.newest(Duration::from_secs(2));
+        stop.store(true, Ordering::Relaxed);
+        assert_eq!(units.len(), 45);
+        assert!(units[0].is_key && units.iter().all(|unit| unit.is_decodable));
+        assert_eq!(units.iter().filter(|unit| unit.is_key).count(), 2);
+        assert!(newest.is_some_and(|unit| unit.at >= units[44].at));
+        assert_eq!(stream.counters().1, 0);
+    });
 }

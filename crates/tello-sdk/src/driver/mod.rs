@@ -3,8 +3,10 @@
 mod blocking;
 mod config;
 mod error;
+mod video;
 mod worker;
 
 pub use blocking::Drone;
 pub use config::DroneConfig;
 pub use error::{ConnectError, DriveError};
+pub use video::{VideoConfig, VideoStream};
