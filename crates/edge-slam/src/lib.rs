@@ -13,5 +13,6 @@ pub mod image;
 #[cfg(feature = "image-files")]
 pub mod sequence;
 mod simd;
+pub mod two_view;
 
 pub use nalgebra;

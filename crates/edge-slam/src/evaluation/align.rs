@@ -104,7 +104,7 @@ pub fn align_points<P: Copy + Into<[f64; 3]>>(
         covariance += (y - target_mean) * (x - source_mean).transpose();
         variance += (x - source_mean).norm_squared();
     }
-    let rotation = rotation_from(&covariance)?;
+    let rotation = rotation_between(&covariance)?;
     let scale = match alignment {
         Alignment::Sim3 => {
             rotation
@@ -148,7 +148,9 @@ fn mean(points: &[Vector3<f64>]) -> Vector3<f64> {
 }
 
 /// The rotation that maximises tr(Rᵀ covariance): Horn 1987, the eigenvector of the greatest eigenvalue.
-fn rotation_from(covariance: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, EvaluationError> {
+pub(crate) fn rotation_between(
+    covariance: &Matrix3<f64>,
+) -> Result<UnitQuaternion<f64>, EvaluationError> {
     let size = covariance.norm();
     if !(size > f64::MIN_POSITIVE) {
         return Err(EvaluationError::Degenerate { ratio: 0.0 });

@@ -11,6 +11,7 @@ mod map_accuracy;
 mod rpe;
 mod statistics;
 
+pub(crate) use align::rotation_between;
 pub use align::{Alignment, Similarity, align_points};
 pub use ape::{AbsolutePoseError, ApeConfig, absolute_pose_error};
 pub use associate::associate;
