@@ -5,10 +5,12 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+pub mod camera;
 pub mod command;
 #[cfg(feature = "std")]
 pub mod driver;
 pub mod emulator;
+pub mod record;
 pub mod reply;
 pub mod safety;
 pub mod session;
@@ -17,6 +19,7 @@ pub mod telemetry;
 pub mod units;
 pub mod video;
 
+pub use camera::{CalibrationError, CalibrationSource, Intrinsics};
 pub use command::{
     Arc, Class, Command, Credentials, Flip, Pad, Query, ReplyShape, SdkVersion, Waypoint,
 };

@@ -313,3 +313,34 @@ fn the_same_seed_gives_the_same_transcript() {
     assert_eq!(transcript(7), transcript(7));
     assert_ne!(transcript(7), transcript(8));
 }
+
+#[test]
+fn a_recorded_flight_runs_again_to_the_letter() {
+    let drone = EmulatorConfig {
+        faults: Faults::lossy(),
+        seed: 3,
+        ..EmulatorConfig::default()
+    };
+    let mut flight = flight(drone);
+    for text in [
+        "command",
+        "takeoff",
+        "forward 100",
+        "battery?",
+        "cw 90",
+        "land",
+    ] {
+        flight.fly(text);
+    }
+    let again = record::replay(&flight.recording, SessionConfig::default()).unwrap();
+    assert_eq!(again.sent, flight.sent);
+    assert!(again.is_identical() && again.skipped == 0);
+    // A torn tail loses the tail only.
+    let torn = &flight.recording[..flight.recording.len() / 2];
+    assert!(
+        !record::replay(torn, SessionConfig::default())
+            .unwrap()
+            .recorded
+            .is_empty()
+    );
+}

@@ -12,6 +12,8 @@ pub(crate) struct Flight {
     pub(crate) events: Vec<(Duration, Event)>,
     /// Every datagram that the session sent.
     pub(crate) sent: Vec<(Duration, String)>,
+    /// The whole session as a recording.
+    pub(crate) recording: Vec<u8>,
     /// Every reply that arrived.
     pub(crate) heard: Vec<(Duration, String)>,
     /// Replies attributed to a command that the drone did not answer with them.
@@ -31,6 +33,7 @@ impl Flight {
             now: Duration::ZERO,
             events: Vec::new(),
             sent: Vec::new(),
+            recording: Vec::new(),
             heard: Vec::new(),
             misattributed: Vec::new(),
         }
@@ -86,6 +89,10 @@ impl Flight {
                 self.heard
                     .push((at, format!("{} to `{question}`", text.trim())));
             }
+            match transmit.channel {
+                Channel::State => self.record(record::Channel::State, bytes),
+                _ => self.record(record::Channel::Reply, bytes),
+            }
             self.session.handle_input(input);
             let answered = transmit
                 .answers
@@ -102,6 +109,7 @@ impl Flight {
                 Output::WaitUntil(wait) => return wait,
                 Output::Send(bytes) => {
                     let text = String::from_utf8(bytes.clone()).unwrap();
+                    self.record(record::Channel::Sent, &bytes);
                     self.sent.push((self.now, text));
                     self.drone.receive(self.now, client(), &bytes);
                 }
@@ -128,8 +136,20 @@ impl Flight {
         }
     }
 
+    fn record(&mut self, channel: record::Channel, bytes: &[u8]) {
+        record::encode(
+            &record::Record {
+                at: self.now,
+                channel,
+                bytes,
+            },
+            &mut self.recording,
+        );
+    }
+
     /// Requests a command and runs until it has ended or a long time has passed.
     pub(crate) fn fly(&mut self, text: &str) -> Outcome {
+        self.record(record::Channel::Request, text.as_bytes());
         let id = self
             .session
             .request(self.now, Command::parse(text).unwrap())
