@@ -11,6 +11,9 @@ use super::interpolate;
 use super::ray::Ray;
 use crate::vector::{Vec3, distance, dot, lerp, norm_squared, scale, sub};
 
+/// So many voxels in a row that the keyframe already saw through end the filling between its rays.
+const ENOUGH_KNOWN: usize = 3;
+
 pub(super) struct Carver<'a> {
     config: &'a FreeSpaceConfig,
     grid: &'a Grid,
@@ -49,7 +52,10 @@ impl<'a> Carver<'a> {
         }
         let end = lerp(ray.origin, ray.end, carved / length);
         let number = *self.rays;
-        self.follow(ray.origin, end, |voxel| voxel.cross(keyframe, number));
+        self.follow(ray.origin, end, |voxel| {
+            voxel.cross(keyframe, number);
+            true
+        });
         let widening = self.config.patch_half_angle.tan();
         if carved * widening > 0.5 * self.grid.resolution {
             self.widen(ray.origin, end, widening, keyframe);
@@ -64,13 +70,22 @@ impl<'a> Carver<'a> {
         let config = self.config;
         interpolate::between(rays, config, |places| {
             for place in places {
-                self.follow(place.origin, place.end, |voxel| voxel.witness(keyframe));
+                // Backwards: what lies before voxels that this keyframe saw through is mostly known.
+                let mut known = 0;
+                self.follow(place.end, place.origin, |voxel| {
+                    known = if voxel.witness(keyframe) {
+                        0
+                    } else {
+                        known + 1
+                    };
+                    known < ENOUGH_KNOWN
+                });
             }
         });
     }
 
-    /// Marks the voxels along a segment.
-    fn follow(&mut self, from: Vec3, to: Vec3, mut mark: impl FnMut(&mut Evidence)) {
+    /// Marks the voxels along a segment for as long as `mark` holds.
+    fn follow(&mut self, from: Vec3, to: Vec3, mut mark: impl FnMut(&mut Evidence) -> bool) {
         let resolution = self.grid.resolution;
         let mut cell = self.grid.cell_of(from);
         let last = self.grid.cell_of(to);
@@ -95,8 +110,9 @@ impl<'a> Carver<'a> {
         let mut index = index as isize;
         let strides = self.grid.strides().map(|stride| stride as isize);
         for _ in 0..=left {
-            if let Some(voxel) = self.evidence.get_mut(index as usize) {
-                mark(voxel);
+            let goes_on = self.evidence.get_mut(index as usize).is_some_and(&mut mark);
+            if !goes_on {
+                return;
             }
             let mut axis = if next[0] <= next[1] { 0 } else { 1 };
             if next[2] < next[axis] {

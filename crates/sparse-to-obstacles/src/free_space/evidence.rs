@@ -34,18 +34,19 @@ impl Evidence {
         self.witness(keyframe);
     }
 
-    /// Remembers a keyframe that saw through.
+    /// Remembers a keyframe that saw through. Is it news, as far as can be known?
     #[inline]
-    pub(super) fn witness(&mut self, keyframe: KeyframeId) {
+    pub(super) fn witness(&mut self, keyframe: KeyframeId) -> bool {
         for witness in &mut self.witnesses {
             if *witness == keyframe {
-                return;
+                return false;
             }
             if *witness == NOBODY {
                 *witness = keyframe;
-                return;
+                return true;
             }
         }
+        true
     }
 
     pub(super) fn end(&mut self) {

@@ -97,7 +97,12 @@ fn is_continuous(triangle: &[Ray; 3], config: &FreeSpaceConfig) -> bool {
     widest <= config.max_triangle_angle && deepest <= config.max_depth_ratio * nearest
 }
 
-/// Rays to the centres of the equal parts of a triangle whose edges are about a voxel long.
+/// How far apart, in voxels, rays may be before what lies between them is filled.
+const GAP: f64 = 0.7;
+
+/// Rays to the centres of the equal parts of a triangle whose edges are about a voxel long. They start
+/// where the triangle's own rays are farther apart than [`GAP`], since before that these cross every
+/// voxel that the filling would.
 fn places(triangle: [Ray; 3], config: &FreeSpaceConfig) -> impl Iterator<Item = Ray> {
     let origin = triangle[0].origin;
     let [a, b, c] = triangle.map(|ray| {
@@ -109,17 +114,22 @@ fn places(triangle: [Ray; 3], config: &FreeSpaceConfig) -> impl Iterator<Item = 
         )
     });
     let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
-    let parts = (longest / config.resolution).ceil().clamp(1.0, 1000.0) as usize;
+    let from = GAP * config.resolution / longest;
+    let parts = if from < 1.0 {
+        (longest / config.resolution).ceil().min(1000.0) as usize
+    } else {
+        0
+    };
     (0..parts).flat_map(move |i| {
         (0..2 * (parts - i) - 1).map(move |j| {
             // Upright and upside-down parts alternate along a row.
             let third = if j % 2 == 0 { 1.0 / 3.0 } else { 2.0 / 3.0 };
             let u = (i as f64 + third) / parts as f64;
             let v = ((j / 2) as f64 + third) / parts as f64;
-            let along = add(scale(sub(b, a), u), scale(sub(c, a), v));
+            let end = add(a, add(scale(sub(b, a), u), scale(sub(c, a), v)));
             Ray {
-                origin,
-                end: add(a, along),
+                origin: lerp(origin, end, from),
+                end,
             }
         })
     })

@@ -4,10 +4,10 @@ use crate::scene::{Vec3, distance, lerp};
 use rand::{Rng, RngExt};
 
 const STEP: f64 = 0.6;
-const ITERATIONS: usize = 4000;
+const ITERATIONS: usize = 10_000;
 
 /// A path from start to goal over motions that `is_free` allows.
-pub fn plan(
+pub(crate) fn plan(
     (start, goal): (Vec3, Vec3),
     (low, high): (Vec3, Vec3),
     is_free: impl Fn(Vec3, Vec3) -> bool,

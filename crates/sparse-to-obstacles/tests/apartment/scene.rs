@@ -5,21 +5,21 @@ use rand_pcg::Pcg64;
 use sparse_to_obstacles::Ray;
 use std::path::PathBuf;
 
-pub type Vec3 = [f64; 3];
+pub(crate) type Vec3 = [f64; 3];
 
-pub struct Scene {
-    pub inliers: Vec<Vec3>,
-    pub boxes: Vec<(Vec3, Vec3)>,
-    pub cameras: Vec<Vec3>,
-    pub queries: Vec<(Vec3, Vec3)>,
-    pub bounds: (Vec3, Vec3),
+pub(crate) struct Scene {
+    pub(crate) inliers: Vec<Vec3>,
+    pub(crate) boxes: Vec<(Vec3, Vec3)>,
+    pub(crate) cameras: Vec<Vec3>,
+    pub(crate) queries: Vec<(Vec3, Vec3)>,
+    pub(crate) bounds: (Vec3, Vec3),
 }
 
 /// Nearer than this to its point, a line of sight may enter a true box: the depth noise of the points.
 const DEPTH_NOISE: f64 = 0.15;
 
 impl Scene {
-    pub fn load() -> Option<Self> {
+    pub(crate) fn load() -> Option<Self> {
         let folder = std::env::var("EXPLORER_DATA")
             .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
         let stem = PathBuf::from(folder).join("data/synthetic-apartment/apt_10k_o15");
@@ -54,7 +54,7 @@ impl Scene {
     }
 
     /// Rays from cameras to the points that they can see in truth, at most `observers` per point.
-    pub fn rays(&self, range: f64, observers: usize, seed: u64) -> Vec<Ray> {
+    pub(crate) fn rays(&self, range: f64, observers: usize, seed: u64) -> Vec<Ray> {
         let mut rng = Pcg64::seed_from_u64(seed);
         let mut rays = Vec::new();
         for &end in &self.inliers {
@@ -82,7 +82,7 @@ impl Scene {
     }
 
     /// Does the line cross a true box?
-    pub fn crosses(&self, a: Vec3, b: Vec3) -> bool {
+    pub(crate) fn crosses(&self, a: Vec3, b: Vec3) -> bool {
         self.boxes.iter().any(|&(low, high)| {
             let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
             for axis in 0..3 {
@@ -105,7 +105,7 @@ impl Scene {
     }
 
     /// The least distance of places on the line, one centimetre apart, from a true box or the bounds.
-    pub fn clearance(&self, a: Vec3, b: Vec3) -> f64 {
+    pub(crate) fn clearance(&self, a: Vec3, b: Vec3) -> f64 {
         let steps = (distance(a, b) / 0.01).ceil().max(1.0) as usize;
         (0..=steps)
             .map(|i| self.point_clearance(lerp(a, b, i as f64 / steps as f64)))
@@ -136,7 +136,7 @@ fn corners(value: &serde_json::Value) -> (Vec3, Vec3) {
     (vec3(value, 0), vec3(value, 3))
 }
 
-pub fn distance(a: Vec3, b: Vec3) -> f64 {
+pub(crate) fn distance(a: Vec3, b: Vec3) -> f64 {
     [0, 1, 2]
         .map(|i| (a[i] - b[i]).powi(2))
         .iter()
@@ -144,6 +144,6 @@ pub fn distance(a: Vec3, b: Vec3) -> f64 {
         .sqrt()
 }
 
-pub fn lerp(a: Vec3, b: Vec3, t: f64) -> Vec3 {
+pub(crate) fn lerp(a: Vec3, b: Vec3, t: f64) -> Vec3 {
     [0, 1, 2].map(|i| a[i] + t * (b[i] - a[i]))
 }
