@@ -66,7 +66,7 @@ impl Default for DroneConfig {
             settle_time: Duration::from_millis(500),
             distance_error: 0.025,
             heading_error: 1.5_f64.to_radians(),
-            hover_wander: 0.015,
+            hover_wander: 0.012,
             wander_time: 2.0,
             takeoff_height: (0.8, 1.0),
             takeoff_time: Duration::from_millis(3890),

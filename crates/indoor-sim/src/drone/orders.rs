@@ -63,6 +63,17 @@ impl Drone {
         }
     }
 
+    /// In the air with the sticks at rest.
+    fn ready(&self) -> Result<(), Refusal> {
+        self.airborne()?;
+        let held = |(velocity, turn): (Vector3<f64>, f64)| velocity.norm() > 0.0 || turn != 0.0;
+        if self.sticks.is_some_and(held) {
+            Err(Refusal::NotJoystick)
+        } else {
+            Ok(())
+        }
+    }
+
     fn take_off(&mut self) -> Result<Order, Refusal> {
         match self.phase {
             Phase::Crashed => return Err(Refusal::MotorStop),
@@ -95,7 +106,7 @@ impl Drone {
 
     /// A straight move, `way` in the body's frame (x forward, y left, z up), metres.
     fn fly(&mut self, way: Vector3<f64>, speed: f64) -> Result<Order, Refusal> {
-        self.airborne()?;
+        self.ready()?;
         let stretch = 1.0 + self.config.distance_error * normal(&mut self.rng);
         let aside = self.config.heading_error * normal(&mut self.rng);
         let heading = self.goal.yaw + aside;
@@ -117,7 +128,7 @@ impl Drone {
 
     /// A turn on the spot, counter-clockwise positive, rad.
     fn turn(&mut self, angle: f64) -> Result<Order, Refusal> {
-        self.airborne()?;
+        self.ready()?;
         let turn = angle + self.config.heading_error * normal(&mut self.rng);
         let profile = Profile::new(turn.abs(), self.config.yaw_rate, TURN_ACCELERATION);
         let dead_time = self.config.dead_time.as_secs_f64();

@@ -27,9 +27,9 @@ pub struct SlamConfig {
     pub pose_noise: f64,
     /// Standard deviation of a frame's attitude per axis, rad, 0..=0.2.
     pub attitude_noise: f64,
-    /// Drift of the position per metre flown into unmapped space, 0..=0.5.
+    /// Drift of the position per metre flown where no old point is in view, metres, 0..=0.5.
     pub drift_per_meter: f64,
-    /// Drift of the heading per radian turned into unmapped space, rad, 0..=0.5.
+    /// Drift of the heading per radian turned where no old point is in view, rad, 0..=0.5. There is no drift of scale.
     pub drift_per_radian: f64,
     /// Least and greatest length of a metre in map units; drawn anew, evenly in its logarithm, for each epoch; 0.001..=1000.
     pub scale: (f64, f64),
@@ -63,7 +63,7 @@ impl Default for SlamConfig {
             drift_per_radian: 0.3 / 90.0,
             scale: (0.2, 5.0),
             least_common: 100,
-            least_baseline: 0.08,
+            least_baseline: 0.10,
             least_tracked: 20,
             patience: Duration::from_millis(500),
             relocalization_points: 40,

@@ -25,16 +25,43 @@ pub(crate) fn mean_at(
     (weight > 0.0).then(|| placed(place, image / weight, yaw / weight))
 }
 
-/// A drift after a camera at `place` has moved `distance` metres and turned `angle` rad into the unknown.
-pub(crate) fn slid(
-    drift: &Drift,
-    place: Vector3<f64>,
-    (shift, turn): (f64, f64),
-    rng: &mut impl Rng,
-) -> Drift {
-    let image = (drift * nalgebra::Point3::from(place)).coords;
-    let yaw = heading(drift) + turn * normal(rng);
-    placed(place, image + normal3(rng) * shift, yaw)
+/// The slide into the unknown: a steady direction that changes slowly from keyframe to keyframe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Slide {
+    shift: Vector3<f64>,
+    turn: f64,
+}
+
+/// How much of the slide's direction survives a keyframe.
+const PERSISTENCE: f64 = 0.9;
+
+impl Slide {
+    pub(crate) fn new(rng: &mut impl Rng) -> Self {
+        Self {
+            shift: normal3(rng),
+            turn: normal(rng),
+        }
+    }
+
+    /// Changes the direction a little, keeping its spread.
+    pub(crate) fn change(&mut self, rng: &mut impl Rng) {
+        let fresh = (1.0 - PERSISTENCE * PERSISTENCE).sqrt();
+        self.shift = self.shift * PERSISTENCE + normal3(rng) * fresh;
+        self.turn = self.turn * PERSISTENCE + normal(rng) * fresh;
+    }
+
+    /// The drift after a camera has come to `place`, having slid by `shift` metres and `turn` rad.
+    pub(crate) fn apply(
+        &self,
+        drift: &Drift,
+        place: Vector3<f64>,
+        (shift, turn): (f64, f64),
+    ) -> Drift {
+        let image = (drift * nalgebra::Point3::from(place)).coords;
+        // Three components of variance 1/3 each make a step of the length asked for.
+        let step = self.shift * (shift / 3.0_f64.sqrt());
+        placed(place, image + step, heading(drift) + self.turn * turn)
+    }
 }
 
 /// The drift that turns by `yaw` and takes `place` to `image`.

@@ -20,7 +20,7 @@ pub(crate) struct Frame {
     pub(crate) estimate: Isometry3<f64>,
     pub(crate) drift: Drift,
     /// Points that it observes; a removed keyframe observes none.
-    points: Vec<u32>,
+    pub(super) points: Vec<u32>,
     /// Whether it is still part of the map.
     pub(crate) kept: bool,
 }
@@ -68,14 +68,15 @@ pub(crate) struct Point {
 pub(crate) struct Mapping {
     pub(crate) frames: Vec<Frame>,
     pub(crate) points: Vec<Point>,
-    owner: Vec<u32>,
+    /// The point of each landmark, or [`NONE`].
+    pub(super) owner: Vec<u32>,
     sightings: Vec<Vec<u32>>,
     outliers: Outliers,
     next_id: u64,
 }
 
 /// No map point.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// Keyframes that a landmark without a point is remembered from.
 const MEMORY: usize = 8;
@@ -83,16 +84,6 @@ const MEMORY: usize = 8;
 /// Focal length that turns pixel noise into bearing noise is the camera's; this is the growth per pyramid octave that
 /// corners have on average: between 1 and 1.2⁷.
 const OCTAVE_GROWTH: f64 = 1.5;
-
-/// How many of the newest keyframes are looked at when removing redundant ones.
-const RECENT: u32 = 12;
-
-/// Share of well observed points that makes a keyframe redundant (ORB-SLAM: 0.9).
-const REDUNDANT: f64 = 0.9;
-
-/// A point is well observed with more observers than this. ORB-SLAM: 3 in the same octave or finer; octaves are not
-/// simulated, so the number is raised until the points keep as many observers as on real maps.
-const OTHERS: usize = 5;
 
 /// Corners differ in how well they are localised: the logarithm of a point's share of the noise has this deviation.
 const QUALITY_SPREAD: f64 = 0.6;
@@ -262,63 +253,6 @@ impl Mapping {
             } else {
                 self.sightings[landmark].push(1);
             }
-        }
-    }
-
-    /// Removes the points born two keyframes ago that still have two observers or fewer, as ORB-SLAM does.
-    fn cull_points(&mut self, newest: u32) {
-        let Some(probation) = newest.checked_sub(2) else {
-            return;
-        };
-        for index in (0..self.points.len()).rev() {
-            let point = &mut self.points[index];
-            if point.born < probation {
-                break;
-            }
-            if point.kept && point.born == probation && point.observers.len() <= 2 {
-                point.kept = false;
-                self.owner[point.landmark as usize] = NONE;
-                for observer in core::mem::take(&mut point.observers) {
-                    self.frames[observer.0 as usize]
-                        .points
-                        .retain(|&other| other != index as u32);
-                }
-            }
-        }
-    }
-
-    fn remove_point(&mut self, index: u32) {
-        let point = &mut self.points[index as usize];
-        point.kept = false;
-        self.owner[point.landmark as usize] = NONE;
-        for observer in core::mem::take(&mut point.observers) {
-            self.frames[observer.0 as usize]
-                .points
-                .retain(|&other| other != index);
-        }
-    }
-
-    /// Removes the recent keyframes that are redundant: nine tenths of their points are well observed without them.
-    fn cull_frames(&mut self, newest: u32) {
-        let oldest = newest.saturating_sub(RECENT).max(2);
-        for number in oldest..newest.saturating_sub(1) {
-            let frame = &self.frames[number as usize];
-            let seen = |&&index: &&u32| self.points[index as usize].observers.len() > OTHERS;
-            let redundant = frame.points.iter().filter(seen).count();
-            if frame.kept && redundant as f64 > REDUNDANT * frame.points.len() as f64 {
-                self.remove_frame(number);
-            }
-        }
-    }
-
-    fn remove_frame(&mut self, number: u32) {
-        let frame = &mut self.frames[number as usize];
-        frame.kept = false;
-        let id = KeyFrameId(u64::from(number));
-        for index in core::mem::take(&mut frame.points) {
-            self.points[index as usize]
-                .observers
-                .retain(|&observer| observer != id);
         }
     }
 

@@ -2,6 +2,7 @@
 //! that is as sparse, as noisy and as wrong as a real one.
 
 mod config;
+mod culling;
 mod detection;
 mod drift;
 mod export;
@@ -59,7 +60,9 @@ struct LastFrame {
     keyframe_time: Duration,
     keyframe_pose: Isometry3<f64>,
     keyframe_tracked: usize,
+    pose: Isometry3<f64>,
     drift: drift::Drift,
+    slide: drift::Slide,
     jitter: nalgebra::Vector3<f64>,
 }
 

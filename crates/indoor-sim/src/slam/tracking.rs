@@ -7,7 +7,7 @@ use rand::RngExt;
 use slam_bridge::{SlamUpdate, TrackingState};
 
 use super::detection::{Detection, detect};
-use super::drift::{Drift, mean_at, slid};
+use super::drift::{Drift, Slide, mean_at};
 use super::mapping::{Frame, Mapping, Surroundings};
 use super::triangulation::parallax;
 use super::{LastFrame, Reference, SyntheticSlam};
@@ -25,6 +25,12 @@ const KEYFRAME_BASELINE: f64 = 0.03;
 
 /// A picture that a map may begin with is given up after this long.
 const REFERENCE_AGE: Duration = Duration::from_secs(20);
+
+/// Points born this many keyframes ago anchor the drift.
+const OLD: u32 = 20;
+
+/// Fewer old points than this anchor nothing.
+const FEW: u32 = 10;
 
 /// Chance, relative to a right point, that a wrong point is matched again.
 const WRONG_MATCH: f64 = 0.75;
@@ -144,7 +150,9 @@ impl SyntheticSlam {
             keyframe_time: second.time,
             keyframe_pose: second.pose,
             keyframe_tracked: points,
+            pose: second.pose,
             drift: Drift::identity(),
+            slide: Slide::new(&mut self.rng),
             jitter: Vector3::zeros(),
         });
         (
@@ -237,19 +245,8 @@ impl SyntheticSlam {
         detections: &[Detection],
         matched: &[u32],
     ) -> Option<Isometry3<f64>> {
-        let center = pose.translation.vector;
-        let mut weights = vec![0.0; self.mapping.frames.len()];
-        for &index in matched {
-            weights[self.mapping.points[index as usize].born as usize] += 1.0;
-        }
-        let frames = &self.mapping.frames;
-        let used = weights
-            .iter()
-            .zip(frames)
-            .filter(|(weight, _)| **weight > 0.0);
+        self.slide(pose, matched);
         let last = self.last.as_mut()?;
-        let drift = mean_at(center, used.map(|(&weight, frame)| (frame.drift, weight)));
-        last.drift = drift.unwrap_or(last.drift);
         let range = median_range(detections);
         let scarce = (100.0 / (matched.len() as f64 + 1.0))
             .sqrt()
@@ -262,6 +259,46 @@ impl SyntheticSlam {
         let rotation = UnitQuaternion::from_scaled_axis(attitude) * truth.rotation;
         let place = Translation3::from(truth.translation.vector + last.jitter);
         Some(Isometry3::from_parts(place, rotation))
+    }
+
+    /// Lets the drift grow with the motion since the last frame, and pulls it back to that of old points in view.
+    fn slide(&mut self, pose: &Isometry3<f64>, matched: &[u32]) {
+        let Some(last) = self.last.as_mut() else {
+            return;
+        };
+        let center = pose.translation.vector;
+        let moved = (center - last.pose.translation.vector).norm();
+        let turned = pose.rotation.angle_to(&last.pose.rotation);
+        let amount = (
+            self.config.drift_per_meter * moved,
+            self.config.drift_per_radian * turned,
+        );
+        let open = last.slide.apply(&last.drift, center, amount);
+        last.pose = *pose;
+        let frames = &self.mapping.frames;
+        let newest = frames.len() as u32;
+        let mut weights = vec![0.0; frames.len()];
+        let mut old = 0;
+        for &index in matched {
+            let born = self.mapping.points[index as usize].born;
+            if born + OLD < newest {
+                weights[born as usize] += 1.0;
+                old += 1;
+            }
+        }
+        let used = weights
+            .iter()
+            .zip(frames)
+            .filter(|(weight, _)| **weight > 0.0);
+        let anchor = mean_at(center, used.map(|(&weight, frame)| (frame.drift, weight)));
+        let share = if old < FEW {
+            0.0
+        } else {
+            f64::from(old) / matched.len() as f64
+        };
+        last.drift = anchor
+            .and_then(|anchor| mean_at(center, [(anchor, share), (open, 1.0 - share)].into_iter()))
+            .unwrap_or(open);
     }
 
     /// Adds a keyframe when the picture shows much that the last one did not.
@@ -283,12 +320,8 @@ impl SyntheticSlam {
             last.keyframe_tracked = last.keyframe_tracked.max(right.len());
             return;
         }
-        let turned = pose.rotation.angle_to(&last.keyframe_pose.rotation);
-        let slide = (
-            self.config.drift_per_meter * moved,
-            self.config.drift_per_radian * turned,
-        );
-        let drift = slid(&last.drift, pose.translation.vector, slide, &mut self.rng);
+        last.slide.change(&mut self.rng);
+        let drift = last.drift;
         last.keyframe_time = time;
         last.keyframe_pose = *pose;
         let mut matched = [right, wrong].concat();

@@ -17,7 +17,7 @@ impl Information {
     pub(crate) fn add_view(&mut self, ray: Vector3<f64>, bearing_noise: f64) {
         let range = ray.norm().max(1e-6);
         let direction = ray / range;
-        let lateral = (range * bearing_noise).max(1e-6);
+        let lateral = (range * bearing_noise).max(1e-8);
         let across = Matrix3::identity() - direction * direction.transpose();
         self.matrix += across / (lateral * lateral);
         self.mean_ray += direction;

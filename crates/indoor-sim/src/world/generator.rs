@@ -46,7 +46,7 @@ fn empty_plan(seed: u64, rng: &mut impl Rng) -> FloorPlan {
             name: "corridor".to_owned(),
             min: [0.0, south],
             max: [length, south + width],
-            texture: uniform(rng, 0.7, 1.2),
+            texture: uniform(rng, 0.9, 1.4),
         }],
         doors: Vec::new(),
         furniture: Vec::new(),
@@ -104,7 +104,7 @@ fn add_row(
             height: 2.05,
         };
         plan.doors.push(door);
-        let texture = uniform(rng, 0.7, 1.5);
+        let texture = uniform(rng, 0.9, 1.7);
         plan.rooms.push(Room {
             name,
             min: [from, low],

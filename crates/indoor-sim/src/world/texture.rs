@@ -29,7 +29,7 @@ pub struct TextureConfig {
 impl Default for TextureConfig {
     fn default() -> Self {
         Self {
-            blank_share: 0.35,
+            blank_share: 0.38,
             background: 110.0,
             patch: 850.0,
             furniture: 380.0,
@@ -39,6 +39,9 @@ impl Default for TextureConfig {
         }
     }
 }
+
+/// Greatest width of a panel, metres.
+const PANEL: f64 = 1.05;
 
 /// Widest angle between a surface's normal and the direction to the camera, degrees: beyond it a patch is too foreshortened.
 const GRAZING_DEGREES: f64 = 75.0;
@@ -143,7 +146,7 @@ impl<R: Rng> Painter<'_, R> {
         let horizontal = usize::from(face.axes()[0] == 2);
         let vertical = 1 - horizontal;
         let length = face.high[horizontal] - face.low[horizontal];
-        let panels = length.ceil().max(1.0);
+        let panels = (length / PANEL).ceil().max(1.0);
         let mut blank = false;
         for number in 0..panels as usize {
             let (mut low, mut high) = (face.low, face.high);
