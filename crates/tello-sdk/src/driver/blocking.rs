@@ -2,6 +2,7 @@
 
 use super::config::DroneConfig;
 use super::error::{ConnectError, DriveError};
+use super::recorder::Recorder;
 use super::worker::{Message, Status, Worker, read};
 use crate::command::{Command, Query};
 use crate::reply::Reply;
@@ -80,6 +81,7 @@ impl Drone {
             start: Instant::now(),
             waiting: BTreeMap::new(),
             closing: None,
+            recorder: Recorder::create(config.record.as_deref())?,
         };
         let started = (|| {
             let readers = [

@@ -4,6 +4,7 @@ use crate::safety::PreflightConfig;
 use crate::session::SessionConfig;
 use core::net::{Ipv4Addr, SocketAddr};
 use core::time::Duration;
+use std::path::PathBuf;
 
 /// Settings of a connection.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,8 @@ pub struct DroneConfig {
     pub connect_timeout: Duration,
     /// How long a dropped connection of a flying drone tries to land it before the process may go on. Default 20 s.
     pub landing_timeout: Duration,
+    /// File to record every datagram and request into (see [`record`](crate::record)). Default none.
+    pub record: Option<PathBuf>,
 }
 
 impl Default for DroneConfig {
@@ -35,6 +38,7 @@ impl Default for DroneConfig {
             preflight: PreflightConfig::default(),
             connect_timeout: Duration::from_secs(5),
             landing_timeout: Duration::from_secs(20),
+            record: None,
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::session::{ConfigError, RequestError, Verdict};
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::net::SocketAddr;
+use std::path::PathBuf;
 
 /// Why there is no connection.
 #[derive(Debug, thiserror::Error)]
@@ -16,6 +17,14 @@ pub enum ConnectError {
     Bind {
         /// Which.
         address: SocketAddr,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The recording cannot be written.
+    #[error("cannot write the recording {}: {source}", path.display())]
+    Record {
+        /// Which file.
+        path: PathBuf,
         /// Why.
         source: std::io::Error,
     },

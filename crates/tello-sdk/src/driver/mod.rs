@@ -3,6 +3,7 @@
 mod blocking;
 mod config;
 mod error;
+mod recorder;
 mod video;
 mod worker;
 

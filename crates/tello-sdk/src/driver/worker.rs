@@ -1,7 +1,9 @@
 //! The thread that owns the session: datagrams, requests and time go in through one channel.
 
 use super::config::DroneConfig;
+use super::recorder::Recorder;
 use crate::command::Command;
+use crate::record::Channel;
 use crate::safety::{Finding, preflight};
 use crate::session::{
     Counters, Event, Input, Motors, Origin, Outcome, Output, RequestError, RequestId, Session,
@@ -9,6 +11,7 @@ use crate::session::{
 };
 use crate::telemetry::Telemetry;
 use alloc::collections::BTreeMap;
+use alloc::string::ToString;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::net::SocketAddr;
@@ -56,6 +59,7 @@ pub(super) struct Worker {
     pub(super) start: Instant,
     pub(super) waiting: BTreeMap<RequestId, Answer<Result<Outcome, RequestError>>>,
     pub(super) closing: Option<Duration>,
+    pub(super) recorder: Recorder,
 }
 
 impl Worker {
@@ -91,6 +95,7 @@ impl Worker {
         let now = self.now();
         match message {
             Message::Reply(from, bytes) => {
+                self.recorder.write(now, Channel::Reply, &bytes);
                 let origin = self.origin(from, true);
                 self.session.handle_input(Input::Reply {
                     at: now,
@@ -99,6 +104,7 @@ impl Worker {
                 });
             }
             Message::State(from, bytes) => {
+                self.recorder.write(now, Channel::State, &bytes);
                 let origin = self.origin(from, false);
                 self.session.handle_input(Input::State {
                     at: now,
@@ -106,14 +112,16 @@ impl Worker {
                     bytes: &bytes,
                 });
             }
-            Message::Request(command, answer) => match self.session.request(now, command) {
-                Ok(id) => drop(self.waiting.insert(id, answer)),
-                Err(error) => drop(answer.try_send(Err(error))),
-            },
+            Message::Request(command, answer) => self.request(now, command, answer),
             Message::Sticks(sticks, answer) => {
+                let text = sticks.command().to_string();
+                self.recorder.write(now, Channel::Sticks, text.as_bytes());
                 let _ = answer.try_send(self.session.set_sticks(now, sticks));
             }
-            Message::ReleaseSticks => self.session.release_sticks(now),
+            Message::ReleaseSticks => {
+                self.recorder.write(now, Channel::ReleaseSticks, &[]);
+                self.session.release_sticks(now);
+            }
             Message::Position(position) => self.session.report_position(now, position),
             Message::Acknowledge => self.session.acknowledge_alarm(),
             Message::Preflight(answer) => {
@@ -123,6 +131,20 @@ impl Worker {
             }
             Message::Status(answer) => drop(answer.try_send(self.status(now))),
             Message::Close => self.close(),
+        }
+    }
+
+    fn request(
+        &mut self,
+        now: Duration,
+        command: Command,
+        answer: Answer<Result<Outcome, RequestError>>,
+    ) {
+        self.recorder
+            .write(now, Channel::Request, command.to_string().as_bytes());
+        match self.session.request(now, command) {
+            Ok(id) => drop(self.waiting.insert(id, answer)),
+            Err(error) => drop(answer.try_send(Err(error))),
         }
     }
 
@@ -153,6 +175,7 @@ impl Worker {
         let now = self.now();
         self.closing = Some(now);
         if self.session.may_be_flying() {
+            self.recorder.write(now, Channel::Request, b"land");
             let _ = self.session.request(now, Command::Land);
         }
     }
@@ -171,6 +194,8 @@ impl Worker {
             match self.session.poll_output() {
                 Output::WaitUntil(deadline) => return deadline,
                 Output::Send(bytes) => {
+                    self.recorder
+                        .write(self.start.elapsed(), Channel::Sent, &bytes);
                     // A dead network is the same as a lost datagram: the session finds out by the silence.
                     let _ = self.socket.send_to(&bytes, self.config.drone);
                 }
