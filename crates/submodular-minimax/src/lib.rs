@@ -17,7 +17,9 @@ mod views;
 
 pub use joint_function::{Joined, JointFunction, Split};
 pub use minimax::{Beta, Certificate, MinimaxConfig, StopReason};
-pub use outlier::{OutlierConfig, OutlierError, OutlierRemoval, Reading, Solver, remove_outliers};
+pub use outlier::{
+    OutlierConfig, OutlierError, OutlierRemoval, RayConfig, Reading, Solver, remove_outliers,
+};
 pub use points::PointLike;
 pub use set_function::{Growth, SetFunction};
 pub use subset::Subset;

@@ -1,5 +1,7 @@
 //! Every ready-made function keeps the laws it claims, on random small instances.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
 use proptest::prelude::*;
 use submodular_minimax::functions::{
     Coverage, Dense, FacilityLocation, GraphCut, Kernel, Modular, Points, Representation,

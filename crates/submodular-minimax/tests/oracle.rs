@@ -1,5 +1,7 @@
 //! Maximisers, minimisers and minimax algorithms against exhaustive search.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
 use proptest::prelude::*;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng;

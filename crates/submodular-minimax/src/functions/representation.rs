@@ -39,6 +39,15 @@ impl<S: Similarity> Representation<S> {
         })
     }
 
+    /// Without checks, for entries that are right by construction.
+    pub(crate) fn trusted(similarity: S, lambda: Vec<f64>, gamma: f64) -> Self {
+        Self {
+            similarity,
+            lambda,
+            gamma,
+        }
+    }
+
     /// λ, one entry an element of N₁.
     #[must_use]
     pub fn lambda(&self) -> &[f64] {

@@ -158,6 +158,33 @@ impl Sparse {
         Ok(sparse)
     }
 
+    /// The n x n matrix whose column v has the entries `column(v)` = (u, s(u, v)), by counting.
+    pub(crate) fn transposed<I: Iterator<Item = (usize, f64)>>(
+        n: usize,
+        column: impl Fn(usize) -> I,
+    ) -> Self {
+        let mut offsets = vec![0; n + 1];
+        for v in 0..n {
+            column(v).for_each(|(u, _)| offsets[u + 1] += 1);
+        }
+        for u in 0..n {
+            offsets[u + 1] += offsets[u];
+        }
+        let mut next = offsets.clone();
+        let mut entries = vec![(0, 0.0); offsets[n]];
+        for v in 0..n {
+            for (u, s) in column(v) {
+                entries[next[u]] = (v as u32, s);
+                next[u] += 1;
+            }
+        }
+        Self {
+            columns: n,
+            offsets,
+            entries,
+        }
+    }
+
     /// The stored entries of row u, columns ascending.
     pub fn row(&self, u: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let entries = &self.entries[self.offsets[u]..self.offsets[u + 1]];

@@ -40,6 +40,13 @@ impl NeighbourGraph {
         &self.entries[start..start + self.count[v] as usize]
     }
 
+    /// Drops the neighbours beyond squared distance `limit`.
+    pub(crate) fn truncate(&mut self, limit: f64) {
+        for v in 0..self.count.len() {
+            self.count[v] = self.row(v).partition_point(|n| n.0 <= limit) as u32;
+        }
+    }
+
     /// How many points there are.
     pub(crate) fn len(&self) -> usize {
         self.count.len()

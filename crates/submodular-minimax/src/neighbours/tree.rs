@@ -97,6 +97,32 @@ impl RangeTree {
         }
     }
 
+    /// The index of the point nearest to `center` (ranges do not count); `None` without points.
+    pub(crate) fn nearest_to(&self, center: [f64; 3]) -> Option<u32> {
+        let mut best: Option<Neighbour> = None;
+        let mut stack = vec![0usize];
+        while let Some(at) = stack.pop() {
+            let Some(node) = self.nodes.get(at) else {
+                break;
+            };
+            if best.is_some_and(|b| box_distance(node, center) > b.0) {
+                continue;
+            }
+            if node.right != 0 {
+                stack.push(node.right as usize);
+                stack.push(at + 1);
+                continue;
+            }
+            for i in node.start as usize..node.end as usize {
+                let new = (squared_distance(center, self.points[i]), self.index[i]);
+                if best.is_none_or(|b| precedes(new, b)) {
+                    best = Some(new);
+                }
+            }
+        }
+        best.map(|b| b.1)
+    }
+
     fn descend(
         &self,
         at: usize,

@@ -1,5 +1,7 @@
 //! Why outliers cannot be removed.
 
+use crate::maximize::MaximizeError;
+use crate::minimax::MinimaxError;
 use crate::points::NonFiniteAt;
 use thiserror::Error;
 
@@ -31,6 +33,15 @@ pub enum OutlierError {
         /// What it must be.
         range: &'static str,
     },
+    /// The iterations of Algorithm 1 failed.
+    #[error(transparent)]
+    Minimax(#[from] MinimaxError),
+}
+
+impl From<MaximizeError> for OutlierError {
+    fn from(error: MaximizeError) -> Self {
+        Self::Minimax(error.into())
+    }
 }
 
 impl From<NonFiniteAt> for OutlierError {

@@ -1,0 +1,97 @@
+//! Outlier removal on labelled maps: our presets at fixed settings, baselines at their best setting.
+//!
+//! `cargo run --release -p submodular-minimax --example 03_measure_real_maps [MAP_FOLDER ...]`
+//!
+//! A map folder holds map.ply, keyframes.csv, observations.csv.gz and depth_check.csv; without
+//! arguments the maps of the data folder are read. A point is an outlier if its depth differs by
+//! more than 20 % from the depth sensor's. Baselines: the one setting of a grid with the best mean F1.
+#![allow(clippy::print_stdout, reason = "an example prints its result")]
+
+#[path = "../tests/labelled/mod.rs"]
+mod labelled;
+#[path = "../tests/labelled/baselines.rs"]
+mod settings;
+
+use labelled::{average_precision, f1, false_positive_rate};
+use std::error::Error;
+use submodular_minimax::{OutlierConfig, RayConfig, Views, remove_outliers};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folders: Vec<String> = std::env::args().skip(1).collect();
+    let mut maps = labelled::real_maps();
+    if !folders.is_empty() {
+        maps = folders
+            .iter()
+            .map(|f| labelled::read_map(f.as_ref()))
+            .collect();
+    }
+    if maps.is_empty() {
+        println!("skipped: no map folders given and no data folder found");
+        return Ok(());
+    }
+    print!("{:34}", "F1 / AP");
+    maps.iter().for_each(|m| print!(" {:>34}", m.name));
+    println!();
+    for family in settings::families() {
+        let (name, row) = settings::best_fixed(&family, &maps)?;
+        print!("{name:34}");
+        row.iter()
+            .for_each(|(f1, ap)| print!(" {:>34}", format!("{f1:.3} / {ap:.3}")));
+        println!();
+    }
+    let ranged = |rays: RayConfig| OutlierConfig {
+        rays,
+        ..OutlierConfig::default()
+    };
+    let rays = RayConfig::default();
+    let ours = [
+        ("D nearest", OutlierConfig::nearest(), true),
+        ("F supported", OutlierConfig::supported(), true),
+        ("G connected", OutlierConfig::connected(), true),
+        ("H rays", OutlierConfig::rays(), true),
+        ("default, no observations", OutlierConfig::default(), false),
+        ("default", OutlierConfig::default(), true),
+        (
+            "- without violations",
+            ranged(RayConfig {
+                violation_exponent: 0.0,
+                ..rays
+            }),
+            true,
+        ),
+        (
+            "- without depth agreement",
+            ranged(RayConfig {
+                depth_exponent: 0.0,
+                ..rays
+            }),
+            true,
+        ),
+    ];
+    for (name, config, observed) in ours {
+        print!("{name:34}");
+        for map in &maps {
+            let views = map.views.as_ref().filter(|_| observed);
+            let found = remove_outliers(&map.points, views, &config)?;
+            let (f1, ap) = (
+                f1(&found.removed, &map.outlier),
+                average_precision(&found.scores, &map.outlier),
+            );
+            let fpr = false_positive_rate(&found.removed, &map.outlier);
+            print!(" {:>34}", format!("{f1:.3} / {ap:.3} (FPR {fpr:.3})"));
+        }
+        println!();
+    }
+    print!("{:34}", "default, agent at the origin");
+    for map in &maps {
+        let views = Views::from_position([0.0; 3], map.points.len())?;
+        let found = remove_outliers(&map.points, Some(&views), &OutlierConfig::default())?;
+        let (f1, ap) = (
+            f1(&found.removed, &map.outlier),
+            average_precision(&found.scores, &map.outlier),
+        );
+        print!(" {:>34}", format!("{f1:.3} / {ap:.3}"));
+    }
+    println!();
+    Ok(())
+}

@@ -1,0 +1,61 @@
+//! Algorithm 1 on an outlier problem: in closed form, or iteration by iteration.
+
+use super::config::{OutlierConfig, Solver};
+use super::error::OutlierError;
+use super::problem::Problem;
+use super::removal::OutlierRemoval;
+use crate::joint_function::JointFunction;
+use crate::maximize::{Constraint, LazyGreedy, Maximizer};
+use crate::minimax::{Beta, Certificate, MinimaxConfig, StopReason, iterative_x_growing};
+use crate::minimize::ModularMinimizer;
+use crate::subset::Subset;
+
+/// Solves the problem and splits the points.
+pub(super) fn solve(
+    problem: &Problem,
+    config: &OutlierConfig,
+) -> Result<OutlierRemoval, OutlierError> {
+    let function = problem.function();
+    let k = problem.representatives(config.max_representatives);
+    let mut oracle = LazyGreedy {
+        constraint: Constraint::Cardinality(k),
+    };
+    let scores = problem.shortfalls();
+    let n = scores.len();
+    if config.solver == Solver::Engine {
+        let settings = MinimaxConfig {
+            beta: Beta::Fixed(problem.beta),
+            ..Default::default()
+        };
+        let grown = iterative_x_growing(&function, &mut oracle, &ModularMinimizer, &settings)?;
+        let (kept, removed) = (0..n).partition(|&v| grown.x.contains(v));
+        let (iterations, certificate, stop) = (grown.iterations, grown.certificate, grown.stop);
+        return Ok(OutlierRemoval {
+            kept,
+            removed,
+            scores,
+            iterations,
+            certificate,
+            stop,
+        });
+    }
+    let (removed, kept): (Vec<usize>, Vec<usize>) = (0..n).partition(|&v| scores[v] >= 0.0);
+    // Truncated scores leave nothing to gain against the closed form: its value is the cost of X.
+    let upper_bound = kept.iter().map(|&v| function.lambda()[v]).sum();
+    let answer = oracle.maximize(function.given_x(&Subset::empty(n)).as_ref())?;
+    let reply = function.modular_given_y(&answer.set);
+    let lower_bound = reply.map_or(0.0, |m| {
+        m.constant + m.weights.iter().map(|w| w.min(0.0)).sum::<f64>()
+    });
+    Ok(OutlierRemoval {
+        kept,
+        removed,
+        scores,
+        iterations: 1,
+        certificate: Certificate {
+            lower_bound: lower_bound.max(0.0),
+            upper_bound,
+        },
+        stop: StopReason::ClosedForm,
+    })
+}
