@@ -1,7 +1,7 @@
 //! Nearest neighbours in a set of points that only grows.
 //!
 //! [`KdTree`] answers in a time that hardly depends on how many points there are; [`LinearScan`] is the plain loop that it is
-//! tested against, and the faster of the two below some fifty points. Both give the same answers, ties included: the
+//! tested against. Both give the same answers, ties included: the
 //! lowest index wins.
 
 mod kd_tree;

@@ -4,7 +4,7 @@
 //! uncluttered 3D environments", 2021; there the replacement is greedy, here it is the optimum of each round.
 
 use super::error::{not_negative, positive};
-use super::visibility_graph::{Segments, VisibilityGraph};
+use super::visibility_graph::{Known, cheapest_way};
 use super::{RefineError, RefineStop, Refined, dag};
 use crate::euclid::distance;
 use crate::motion::MotionValidator;
@@ -60,14 +60,13 @@ pub fn rope<const D: usize>(
     let stop = loop {
         let dense = best.densified(config.max_step)?;
         let points = dense.points();
-        let mut graph = VisibilityGraph::new(points, motion_is_free, Segments::Checked, left);
-        let all: Vec<usize> = (0..points.len()).collect();
-        let found = graph.cheapest(&all, &distance);
-        checks += graph.checks;
-        left -= graph.checks;
-        let spent = graph.is_spent();
-        match found {
-            Some((way, length)) if length < best.length() * (1.0 - config.min_gain) => {
+        let bound = best.length() * (1.0 - config.min_gain);
+        let found = cheapest_way(points, motion_is_free, Known::Bound(bound), left, &distance);
+        checks += found.checks;
+        left -= found.checks;
+        let spent = left == 0;
+        match found.vertices {
+            Some(way) if found.cost < bound => {
                 let way = way.into_iter().map(|place| points[place]).collect();
                 let round = dag(&Path::from_vertices(way), motion_is_free);
                 checks += round.checks;
