@@ -21,6 +21,7 @@ use rrt_refine::nearest::{KdTree, LinearScan};
 use rrt_refine::{Bounds, RrtConfig, RrtStarConfig, rrt, rrt_connect, rrt_star};
 
 type P = [f64; 2];
+type Free<'a> = dyn Fn(&P, &P) -> bool + 'a;
 
 fn points(count: usize) -> Vec<[f64; 3]> {
     let mut rng = Pcg64::new(1, 1);
@@ -143,7 +144,7 @@ fn solve(c: &mut Criterion) {
     let (start, goal) = ([0.5; 2], [19.5; 2]);
     group.throughput(Throughput::Elements(worlds.len() as u64));
     group.sample_size(20);
-    let mut each = |name: &str, plan: &dyn Fn(&dyn Fn(&P, &P) -> bool) -> bool| {
+    let mut each = |name: &str, plan: &dyn Fn(&Free<'_>) -> bool| {
         group.bench_function(name, |b| {
             b.iter(|| {
                 worlds

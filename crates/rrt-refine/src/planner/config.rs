@@ -17,7 +17,7 @@ pub struct RrtConfig {
     /// Most nodes that the trees hold together; at least 1. Default 10,000.
     pub max_nodes: usize,
     /// Check the straight motion to each goal before growing a tree. Default true: in one room it is often free, and then it
-    /// is the shortest path. The edge may be longer than `step_length`.
+    /// is the shortest path. One check a goal until one is free, nearest goal first; the edge may be longer than `step_length`.
     pub try_straight: bool,
 }
 
