@@ -10,7 +10,7 @@
 mod scene;
 
 use rand_pcg::Pcg64;
-use rrt_refine::refine::{TautConfig, dag, taut};
+use rrt_refine::refine::{RopeConfig, TautConfig, dag, rope, taut};
 use rrt_refine::{Path, RrtConfig, RrtStarConfig, rrt, rrt_connect, rrt_star};
 use scene::{BoxWorld, apartment, squared_gap};
 
@@ -59,7 +59,11 @@ fn every_query_is_solved_without_a_touch_and_about_as_short_as_can_be() {
             .path;
         star_total += dag(&best, &free).path.length();
         connect_total += short.length();
-        for path in [&single, &double, &best, &short] {
+        let sparse = dag(&double, &free).path;
+        let roped = rope(&double, &free, &RopeConfig::default())
+            .expect("good parameters")
+            .path;
+        for path in [&single, &double, &best, &short, &sparse, &roped] {
             assert_eq!(path.first_blocked(&free), None, "query {seed}");
             let gap = gap_by_points(&world, path);
             assert!(gap >= world.radius - 1e-9, "query {seed}: {gap}");

@@ -14,7 +14,7 @@ use rrt_refine::refine::{
     ClearanceCost, RefineStop, Refined, RopeConfig, RoundingConfig, ShortcutConfig, TautConfig,
     dag, dag_by_cost, greedy, rope, round_corners, shortcut, taut,
 };
-use rrt_refine::{Path, RrtConfig, rrt};
+use rrt_refine::{Path, RrtConfig, RrtStarConfig, rrt, rrt_connect, rrt_star};
 
 type Refiner<'a> = Box<dyn Fn(&Path<2>) -> Refined<2> + 'a>;
 
@@ -89,6 +89,32 @@ proptest! {
         prop_assert!(best <= greedy(&path, &free).path.length() * (1.0 + 1e-9));
         prop_assert!(rope(&path, &free, &RopeConfig::default()).expect("good parameters").path.length() <= best);
         prop_assert!(taut(&path, &free, &TautConfig::default()).expect("good parameters").path.length() <= best);
+    }
+
+    #[test]
+    fn every_plan_is_free_and_inside_and_joins_its_ends(seed in 0_u64..1_000_000) {
+        let (world, start, goal) = DiscWorld::random(seed, 12.0, 20);
+        let free = |a: &[f64; 2], b: &[f64; 2]| world.is_free(a, b);
+        let bounds = world.bounds();
+        let config = RrtConfig { step_length: 0.8, max_iterations: 400, ..RrtConfig::default() };
+        let star = RrtStarConfig { rrt: config, ..Default::default() };
+        let informed = RrtStarConfig { rrt: config, ..RrtStarConfig::informed() };
+        let rng = || Pcg64::new(seed.into(), 5);
+        let plans = [
+            rrt(start, goal, &bounds, &free, &config, &mut rng()),
+            rrt_connect(start, goal, &bounds, &free, &config, &mut rng()),
+            rrt_star(start, goal, &bounds, &free, &star, &mut rng()),
+            rrt_star(start, goal, &bounds, &free, &informed, &mut rng()),
+        ];
+        for plan in plans {
+            let plan = plan.expect("a fair question");
+            prop_assert!(plan.iterations <= 400 && plan.nodes <= 802);
+            prop_assert_eq!(plan.path.is_some(), plan.goal.is_some());
+            let Some(path) = plan.path else { continue };
+            prop_assert_eq!((path.start(), path.end()), (start, goal));
+            prop_assert_eq!(path.first_blocked(&free), None);
+            prop_assert!(path.points().iter().all(|point| bounds.contains(point)));
+        }
     }
 
     /// Against every subset of the vertices, with an arbitrary table of free motions.
