@@ -1,6 +1,6 @@
 //! Every constant of the search, with unit, range and source.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
 use crate::error::ExitError;
 
@@ -31,6 +31,9 @@ pub enum HeightBand {
     Off,
     /// `|height − agent's height| ≤ f ×` median range of all points, `f > 0`. Needs no scale.
     Relative(f64),
+    /// As `Relative`, but the band follows the strip that the camera saw (see [`crate::Strip`]): its
+    /// middle leans with the bearing. For maps whose up direction is only roughly known.
+    Strip(f64),
     /// Heights above the agent between the two bounds, map units along the plane's normal.
     Absolute {
         /// Lower bound, usually negative.
@@ -54,14 +57,33 @@ pub enum Rule {
 pub struct RangeAware {
     /// Half width of the smoothing window, radians in `[0, π/4]`; 5 degrees.
     pub window: f64,
-    /// Half width of the neighbourhood that stands for the room's wall, radians; 50 degrees.
-    pub neighbourhood: f64,
-    /// Smallest ratio of a bin's range to its surroundings for a bin to be called far; above 1.
+    /// Width of the piece of wall beside an edge that stands for the wall, radians; 8 degrees.
+    pub side: f64,
+    /// Widest opening that is looked for by its range, radians; 60 degrees.
+    pub widest: f64,
+    /// Smallest ratio of a seen range to the wall that a convex room would have there (the line between
+    /// the jambs or the walls beside them, continued) for it to lie beyond; above 1.
     pub jump: f64,
-    /// Smallest ratio of the far range to the continued wall at one edge at least; above 1.
-    pub edge_jump: f64,
+    /// Smallest depth behind the line between the jambs, in units of their distance. A room's corner
+    /// has at most ½, an alcove little more.
+    pub min_depth: f64,
+    /// Votes behind the wall, at least; a bin has a vote per point and up to four.
+    pub min_points_beyond: usize,
+    /// Votes behind the wall per bin, as a share of those of a usual bin, at least. Strays are thin.
+    pub min_density: f64,
+    /// Smallest share of the points in the sector that lie behind the wall, in `[0, 1]`.
+    pub min_share_beyond: f64,
+    /// Smallest width between the jambs as a share of the median range; rules where the scale is
+    /// unknown.
+    pub min_relative_width: f64,
+    /// Largest width between the jambs as a share of the median range: what is wider is a hole in the
+    /// map of the room rather than a way out.
+    pub max_relative_width: f64,
     /// Points that an empty run would hold were it a wall like its surroundings, at least.
     pub min_expected: f64,
+    /// The same, as a share of what such a run holds on average, in `[0, 1]`: where texture is patchy,
+    /// a blank piece of wall looks like a dark doorway, and an empty run proves nothing.
+    pub min_evenness: f64,
     /// Empty runs wider than this were never looked at, radians; a quarter turn, because an opening
     /// that subtends more than that holds the agent.
     pub unseen: f64,
@@ -113,7 +135,7 @@ impl Default for ExitConfig {
             bins: 360,
             min_count: 2,
             min_points: 30,
-            band: HeightBand::Relative(0.25),
+            band: HeightBand::Strip(0.25),
             min_width: None,
             quantile: 0.25,
             rule: Rule::RangeAware(RangeAware::default()),
@@ -125,10 +147,17 @@ impl Default for RangeAware {
     fn default() -> Self {
         Self {
             window: 5f64.to_radians(),
-            neighbourhood: 50f64.to_radians(),
+            side: 8f64.to_radians(),
+            widest: FRAC_PI_3,
             jump: 1.3,
-            edge_jump: 1.25,
+            min_depth: 1.0,
+            min_points_beyond: 6,
+            min_density: 0.1,
+            min_share_beyond: 0.85,
+            min_relative_width: 0.15,
+            max_relative_width: 1.0,
             min_expected: 8.0,
+            min_evenness: 0.7,
             unseen: FRAC_PI_2,
             beyond: 0.2,
         }
@@ -179,7 +208,7 @@ impl ExitConfig {
         }
         match self.band {
             HeightBand::Off => {}
-            HeightBand::Relative(f) => {
+            HeightBand::Relative(f) | HeightBand::Strip(f) => {
                 within(
                     "band",
                     f,
@@ -204,22 +233,57 @@ impl RangeAware {
     fn validate(&self) -> Result<(), ExitError> {
         use std::f64::consts::{FRAC_PI_4, PI, TAU};
         within("window", self.window, 0.0, FRAC_PI_4, "[0, π/4] rad")?;
-        within(
-            "neighbourhood",
-            self.neighbourhood,
-            self.window,
-            PI,
-            "[window, π] rad",
-        )?;
-        within("jump", self.jump, 1.0, f64::MAX, "[1, ∞)")?;
-        within("edge_jump", self.edge_jump, 1.0, f64::MAX, "[1, ∞)")?;
-        within(
-            "min_expected",
-            self.min_expected,
-            0.0,
-            f64::MAX,
-            "[0, ∞) points",
-        )?;
+        let fields = [
+            (
+                "side",
+                self.side,
+                f64::MIN_POSITIVE,
+                FRAC_PI_4,
+                "(0, π/4] rad",
+            ),
+            (
+                "widest",
+                self.widest,
+                f64::MIN_POSITIVE,
+                0.9 * PI,
+                "(0, 0.9π] rad",
+            ),
+            ("jump", self.jump, 1.0, f64::MAX, "[1, ∞)"),
+            ("min_depth", self.min_depth, 0.0, f64::MAX, "[0, ∞) widths"),
+            ("min_density", self.min_density, 0.0, 1.0, "[0, 1]"),
+            (
+                "min_share_beyond",
+                self.min_share_beyond,
+                0.0,
+                1.0,
+                "[0, 1]",
+            ),
+            (
+                "min_relative_width",
+                self.min_relative_width,
+                0.0,
+                f64::MAX,
+                "[0, ∞)",
+            ),
+            (
+                "max_relative_width",
+                self.max_relative_width,
+                0.0,
+                f64::MAX,
+                "[0, ∞)",
+            ),
+            (
+                "min_expected",
+                self.min_expected,
+                0.0,
+                f64::MAX,
+                "[0, ∞) points",
+            ),
+            ("min_evenness", self.min_evenness, 0.0, 1.0, "[0, 1]"),
+        ];
+        for (field, value, low, high, range) in fields {
+            within(field, value, low, high, range)?;
+        }
         within("unseen", self.unseen, f64::MIN_POSITIVE, TAU, "(0, 2π] rad")?;
         within("beyond", self.beyond, 0.0, 1.0, "[0, 1]")
     }

@@ -47,7 +47,7 @@ pub struct ScoreParts {
     /// How well the evidence is supported: `1 − exp(−points / 8)`, for an empty sector with the points
     /// a wall would have shown.
     pub support: f64,
-    /// How passable: `w / (w + ½ needed width)`, one when no width is needed.
+    /// How passable: `w / (w + ½ needed width)`.
     pub width: f64,
 }
 
@@ -71,16 +71,9 @@ pub enum Rejection {
         /// What was needed.
         needed: f64,
     },
-    /// The range grows, but no faster than the walls beside it go on: the far end of a long room.
-    NoEdge {
-        /// Largest ratio of seen range to continued wall at the two edges.
-        edge_jump: f64,
-        /// What was needed.
-        needed: f64,
-    },
-    /// Empty, but the surroundings are so thin that a wall would look the same.
+    /// Empty, but elsewhere walls are so thin or patchy that a wall could look the same.
     Unsupported {
-        /// Points that a wall like the surroundings would have shown.
+        /// Points in the poorest tenth of such runs elsewhere.
         expected: f64,
         /// What was needed.
         needed: f64,

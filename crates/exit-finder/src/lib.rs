@@ -11,6 +11,7 @@ mod points;
 mod profile;
 mod rule;
 mod sector;
+pub mod sites;
 mod vector;
 mod view;
 
@@ -23,7 +24,7 @@ pub use finder::find_exits;
 pub use plane::{AffinePlane, BASIS_TOLERANCE, MIN_SPREAD_RATIO};
 pub use plane_fit::PlaneFit;
 pub use points::PointLike;
-pub use profile::{BinStats, PointCounts, RangeProfile};
+pub use profile::{BinStats, PointCounts, RangeProfile, Strip};
 pub use rule::exits_of_profile;
 pub use sector::Sector;
 pub use view::{ExitView, Gaze};

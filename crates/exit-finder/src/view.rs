@@ -12,7 +12,8 @@ pub struct ExitView<'a> {
     /// Where the camera looked from near the agent. Empty: unknown, then wide empty sectors are
     /// taken as unseen.
     pub gazes: &'a [Gaze],
-    /// Points that close openings already used . They take part in the
+    /// Points that close openings already used ([`crate::sites::SiteGraph::virtual_points`]): they
+    /// count at any height and hide what was seen behind them. They take part in the
     /// search and nowhere else; they count neither for `min_points` nor for the mean range.
     pub virtual_points: &'a [[f64; 3]],
 }

@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::statistics::median;
+use super::strip::Strip;
 use super::{BinStats, PointCounts, RangeProfile};
 use crate::angle::wrap;
 use crate::config::{ExitConfig, HeightBand, RangeFrom, Rule};
@@ -37,8 +38,12 @@ impl RangeProfile {
             .iter()
             .filter_map(|&p| eye.look(p.into(), &mut counts))
             .collect();
+        let (strip, widening) = match config.band {
+            HeightBand::Strip(share) => (Strip::of(&polar), share),
+            _ => (Strip::default(), 0.0),
+        };
         let band = resolve_band(config.band, &polar);
-        counts.outside_band = keep_band(&mut polar, band);
+        counts.outside_band = keep_band(&mut polar, band, &strip, widening);
         counts.used = polar.len();
         check_support(&counts, config)?;
 
@@ -52,13 +57,12 @@ impl RangeProfile {
         let mut ranges: Vec<f64> = polar.iter().map(|p| p.range).collect();
         let median_range = median(&mut ranges).unwrap_or(f64::INFINITY);
         let mut ignored = PointCounts::default();
-        let mut closing: Vec<Polar> = virtual_points
+        let closing: Vec<Polar> = virtual_points
             .iter()
             .filter_map(|&p| eye.look(p, &mut ignored))
             .collect();
-        keep_band(&mut closing, band);
         counts.virtual_used = closing.len();
-        polar.append(&mut closing);
+        counts.hidden = close_doors(&mut polar, closing, config.bins);
 
         let bins = statistics_of(&polar, config);
         Ok(Self {
@@ -69,6 +73,7 @@ impl RangeProfile {
             median_range,
             radius,
             band,
+            strip,
             counts,
         })
     }
@@ -134,7 +139,7 @@ pub(crate) fn resolve_band(band: HeightBand, polar: &[Polar]) -> Option<[f64; 2]
     match band {
         HeightBand::Off => None,
         HeightBand::Absolute { from, to } => Some([from, to]),
-        HeightBand::Relative(share) => {
+        HeightBand::Relative(share) | HeightBand::Strip(share) => {
             let mut ranges: Vec<f64> = polar.iter().map(|p| p.range).collect();
             let reach = share * median(&mut ranges)?;
             Some([-reach, reach])
@@ -142,10 +147,19 @@ pub(crate) fn resolve_band(band: HeightBand, polar: &[Polar]) -> Option<[f64; 2]
     }
 }
 
-fn keep_band(polar: &mut Vec<Polar>, band: Option<[f64; 2]>) -> usize {
+fn keep_band(
+    polar: &mut Vec<Polar>,
+    band: Option<[f64; 2]>,
+    strip: &Strip,
+    widening: f64,
+) -> usize {
     let before = polar.len();
     if let Some([from, to]) = band {
-        polar.retain(|p| p.height >= from && p.height <= to);
+        polar.retain(|p| {
+            let height = p.height - p.range * strip.slope(p.bearing);
+            let widened = widening * p.range;
+            height >= from.min(-widened) && height <= to.max(widened)
+        });
     }
     before - polar.len()
 }
@@ -180,9 +194,31 @@ fn ordered_mean(values: Vec<f64>) -> f64 {
     sum as f64 * unit / values.len() as f64
 }
 
+fn bin_of(p: &Polar, n: usize) -> usize {
+    ((p.bearing / (TAU / n as f64)) as usize).min(n - 1)
+}
+
+/// Adds virtual points at any height and removes the points that they hide: a closed door shows
+/// nothing behind it. Returns the number of points removed.
+fn close_doors(polar: &mut Vec<Polar>, closing: Vec<Polar>, n: usize) -> usize {
+    if closing.is_empty() {
+        return 0;
+    }
+    let mut nearest = vec![f64::INFINITY; n];
+    for p in &closing {
+        let bin = bin_of(p, n);
+        nearest[bin] = nearest[bin].min(p.range);
+    }
+    let before = polar.len();
+    polar.retain(|p| p.range <= nearest[bin_of(p, n)]);
+    let hidden = before - polar.len();
+    polar.extend(closing);
+    hidden
+}
+
 fn statistics_of(polar: &[Polar], config: &ExitConfig) -> Vec<BinStats> {
     let n = config.bins;
-    let bin_of = |p: &Polar| ((p.bearing / (TAU / n as f64)) as usize).min(n - 1);
+    let bin_of = |p: &Polar| bin_of(p, n);
     let mut ends = vec![0usize; n + 1];
     for p in polar {
         ends[bin_of(p) + 1] += 1;

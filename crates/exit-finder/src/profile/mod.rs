@@ -5,9 +5,11 @@
 
 mod binning;
 mod statistics;
+mod strip;
 
 pub use statistics::BinStats;
 pub(crate) use statistics::median;
+pub use strip::Strip;
 
 use std::f64::consts::TAU;
 
@@ -33,6 +35,8 @@ pub struct RangeProfile {
     pub radius: f64,
     /// The band that was used, heights above the agent in map units; `None`: all heights.
     pub band: Option<[f64; 2]>,
+    /// How the band leans; level unless the band is [`crate::HeightBand::Strip`].
+    pub strip: Strip,
     /// What happened to the points.
     pub counts: PointCounts,
 }
@@ -50,6 +54,8 @@ pub struct PointCounts {
     pub at_agent: usize,
     /// Skipped: outside the height band.
     pub outside_band: usize,
+    /// Used points that a virtual point hides; they are not in any bin.
+    pub hidden: usize,
     /// Virtual points in the profile.
     pub virtual_used: usize,
 }

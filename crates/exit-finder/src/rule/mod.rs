@@ -1,6 +1,8 @@
 //! The rules that tell an opening from a wall, on the finished profile.
 
-mod edges;
+mod contour;
+mod line;
+mod matched;
 mod paper;
 mod range_aware;
 mod ranking;

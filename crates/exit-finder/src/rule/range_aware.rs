@@ -1,15 +1,21 @@
 //! The default rule: openings are runs that are empty or whose range jumps above their surroundings.
+//!
+//! 1. Smooth the profile into a contour of the room (`contour`).
+//! 2. Flag the bins that were never looked at (`unseen`).
+//! 3. Range jumps: sectors with points deep behind the line between their edges, and behind the walls
+//!    beside them continued (`matched`).
+//! 4. Gaps: empty runs where walls are so evenly textured that a wall would have shown.
+//! 5. Turn down what is too narrow.
 
+use super::contour::Contour;
+use super::matched;
+use super::unseen::{points_elsewhere, unseen_bins};
 use crate::config::{ExitConfig, RangeAware};
 use crate::exit::{Exit, ExitKind, ExitReport, Rejected, Rejection, ScoreParts};
 use crate::profile::RangeProfile;
 use crate::sector::{Run, circular_runs};
 use crate::vector::distance;
 use crate::view::ExitView;
-
-use super::edges::continued_wall;
-use super::smoothing::{smoothed, surroundings};
-use super::unseen::{expected_points, unseen_bins};
 
 pub(super) fn exits(
     profile: RangeProfile,
@@ -18,13 +24,12 @@ pub(super) fn exits(
     config: &ExitConfig,
 ) -> ExitReport {
     let scene = Scene::new(&profile, rule, view, config);
-    let mut exits = Vec::new();
-    let mut rejected = Vec::new();
-    for candidate in scene.candidates() {
-        match scene.judge(&candidate) {
+    let (mut exits, mut rejected) = (Vec::new(), Vec::new());
+    for (run, verdict) in scene.jumps().into_iter().chain(scene.gaps()) {
+        match verdict {
             Ok(exit) => exits.push(exit),
             Err(reason) => rejected.push(Rejected {
-                sector: candidate.run.sector(scene.n()),
+                sector: run.sector(scene.n()),
                 reason,
             }),
         }
@@ -41,20 +46,16 @@ pub(super) fn exits(
     }
 }
 
-/// The smoothed profile with what is known about each bin.
+type Verdict = (Run, Result<Exit, Rejection>);
+
+/// The profile with what is known about each bin.
 struct Scene<'a> {
     profile: &'a RangeProfile,
     rule: &'a RangeAware,
-    config: &'a ExitConfig,
-    half: usize,
-    ranges: Vec<Option<f64>>,
-    ratios: Vec<f64>,
+    contour: Contour,
     unseen: Vec<bool>,
-}
-
-struct Candidate {
-    run: Run,
-    kind: ExitKind,
+    /// Width below which an opening is turned down, map units.
+    needed: f64,
 }
 
 impl<'a> Scene<'a> {
@@ -62,158 +63,95 @@ impl<'a> Scene<'a> {
         profile: &'a RangeProfile,
         rule: &'a RangeAware,
         view: &ExitView<'_>,
-        config: &'a ExitConfig,
+        config: &ExitConfig,
     ) -> Self {
-        let half = (rule.window / profile.bin_width()).round() as usize;
-        let wide = (rule.neighbourhood / profile.bin_width()).round() as usize;
-        let ranges = smoothed(profile, half, config.min_count);
-        let walls = surroundings(&ranges, wide);
-        let ratios = ranges
-            .iter()
-            .zip(&walls)
-            .map(|(range, wall)| range.zip(*wall).map_or(0.0, |(range, wall)| range / wall))
-            .collect();
-        let unseen = unseen_bins(profile, &ranges, rule, view);
+        let bins = |angle: f64| (angle / profile.bin_width()).round() as usize;
+        let contour = Contour::new(
+            profile,
+            bins(rule.window),
+            bins(rule.side),
+            config.min_count,
+        );
+        let unseen = unseen_bins(profile, &contour.ranges, rule, view);
+        let needed = config
+            .min_width
+            .unwrap_or(rule.min_relative_width * profile.median_range);
         Self {
             profile,
             rule,
-            config,
-            half,
-            ranges,
-            ratios,
+            contour,
             unseen,
+            needed,
         }
     }
 
     fn n(&self) -> usize {
-        self.ranges.len()
+        self.contour.n()
     }
 
-    fn candidates(&self) -> Vec<Candidate> {
-        let far: Vec<bool> = self
-            .ratios
-            .iter()
-            .map(|&ratio| ratio > self.rule.jump)
-            .collect();
-        let empty: Vec<bool> = (0..self.n())
-            .map(|bin| self.ranges[bin].is_none() && !self.unseen[bin])
-            .collect();
-        let jumps = circular_runs(&far)
-            .into_iter()
-            .map(|run| self.half_height(run));
-        let jumps = jumps.map(|run| Candidate {
-            run,
-            kind: ExitKind::RangeJump,
-        });
-        let gaps = circular_runs(&empty).into_iter();
-        let gaps = gaps.map(|run| Candidate {
-            run,
-            kind: ExitKind::Empty,
-        });
-        jumps.chain(gaps).collect()
-    }
-
-    /// The part of a far run around its peak where the ratio is above the root of the peak's.
-    fn half_height(&self, run: Run) -> Run {
-        let n = self.n();
-        let peak = run.bins(n).map(|bin| self.ratios[bin]).fold(0.0, f64::max);
-        let level = peak.sqrt();
-        let inside: Vec<usize> = run
-            .bins(n)
-            .filter(|&bin| self.ratios[bin] >= level)
-            .collect();
-        match (inside.first(), inside.last()) {
-            (Some(&first), Some(&last)) => Run {
-                start: first,
-                len: (last + n - first) % n + 1,
-            },
-            _ => run,
-        }
-    }
-
-    fn judge(&self, candidate: &Candidate) -> Result<Exit, Rejection> {
-        let run = candidate.run;
-        let parts = match candidate.kind {
-            ExitKind::RangeJump => self.jump_parts(run)?,
-            ExitKind::Empty => self.gap_parts(run)?,
+    fn jumps(&self) -> Vec<Verdict> {
+        let found = matched::matches(
+            self.profile,
+            &self.contour,
+            &self.unseen,
+            self.rule,
+            self.needed,
+        );
+        let judge = |found: matched::Match| {
+            let parts = self.parts(found.jump, found.beyond as f64, found.width);
+            let exit = self.exit_of(found.run, ExitKind::RangeJump, parts);
+            (found.run, self.wide_enough(exit, found.width))
         };
-        let exit = self.exit_of(candidate, parts);
-        match self.config.min_width {
-            Some(needed) if exit.width < needed => Err(Rejection::TooNarrow {
-                width: exit.width,
-                needed,
-            }),
-            _ => Ok(exit),
-        }
+        found.into_iter().map(judge).collect()
     }
 
-    fn jump_parts(&self, run: Run) -> Result<ScoreParts, Rejection> {
-        let edge_jump = self.edge_jump(run, false).max(self.edge_jump(run, true));
-        let needed = self.rule.edge_jump;
-        if edge_jump < needed {
-            return Err(Rejection::NoEdge { edge_jump, needed });
-        }
-        let points: usize = run
-            .bins(self.n())
-            .map(|bin| self.profile.bins[bin].count)
-            .sum();
-        Ok(ScoreParts {
-            jump: 1.0 - 1.0 / edge_jump,
-            support: support(points as f64),
-            width: 1.0,
-        })
+    fn gaps(&self) -> Vec<Verdict> {
+        let empty: Vec<bool> = (0..self.n())
+            .map(|bin| self.contour.ranges[bin].is_none() && !self.unseen[bin])
+            .collect();
+        circular_runs(&empty)
+            .into_iter()
+            .map(|run| (run, self.judge_gap(run)))
+            .collect()
     }
 
-    fn gap_parts(&self, run: Run) -> Result<ScoreParts, Rejection> {
-        let expected = expected_points(self.profile, run, self.half);
-        let needed = self.rule.min_expected;
+    fn judge_gap(&self, run: Run) -> Result<Exit, Rejection> {
+        let (expected, mean) = points_elsewhere(self.profile, run);
+        let needed = self.rule.min_expected.max(self.rule.min_evenness * mean);
         if expected < needed {
             return Err(Rejection::Unsupported { expected, needed });
         }
-        Ok(ScoreParts {
-            jump: 0.5,
-            support: support(expected),
-            width: 1.0,
-        })
+        let [a, b] = self.jambs(run);
+        let width = distance(a, b);
+        let exit = self.exit_of(run, ExitKind::Empty, self.parts(GAP_JUMP, expected, width));
+        self.wide_enough(exit, width)
     }
 
-    /// Ratio of the seen range to the continued wall at one edge; 0 where there is no wall.
-    fn edge_jump(&self, run: Run, at_end: bool) -> f64 {
-        let n = self.n();
-        let reach = 3 * self.half.max(1);
-        let outside = |k: usize| {
-            let bin = if at_end {
-                run.start + run.len + k
-            } else {
-                run.start + n - 1 - k + n
-            };
-            self.ranges[bin % n]
-        };
-        let wall: Vec<Option<f64>> = (0..reach.min(n)).map(outside).collect();
-        let middle = run.len as f64 / 2.0;
-        let mut inside: Vec<f64> = run.bins(n).filter_map(|bin| self.ranges[bin]).collect();
-        match (
-            continued_wall(&wall, -middle),
-            crate::profile::median(&mut inside),
-        ) {
-            (Some(inverse), Some(seen)) => inverse * seen,
-            _ => 0.0,
+    fn wide_enough(&self, exit: Exit, width: f64) -> Result<Exit, Rejection> {
+        if width < self.needed {
+            return Err(Rejection::TooNarrow {
+                width,
+                needed: self.needed,
+            });
+        }
+        Ok(exit)
+    }
+
+    fn parts(&self, jump: f64, points: f64, width: f64) -> ScoreParts {
+        let support = 1.0 - (-points / 8.0).exp();
+        ScoreParts {
+            jump,
+            support,
+            width: width / (width + 0.5 * self.needed).max(1e-300),
         }
     }
 
-    fn exit_of(&self, candidate: &Candidate, mut parts: ScoreParts) -> Exit {
+    fn exit_of(&self, run: Run, kind: ExitKind, parts: ScoreParts) -> Exit {
         let profile = self.profile;
-        let sector = candidate.run.sector(self.n());
-        let [before, after] = self.jamb_ranges(candidate.run);
-        let jambs = [
-            profile.at(sector.start_rad, before),
-            profile.at(sector.start_rad + sector.width_rad, after),
-        ];
-        let width = distance(jambs[0], jambs[1]);
-        if let Some(needed) = self.config.min_width {
-            parts.width = width / (width + 0.5 * needed);
-        }
+        let sector = run.sector(self.n());
+        let jambs = self.jambs(run);
         let bearing_rad = sector.middle_rad();
+        let [before, after] = jambs.map(|jamb| distance(jamb, profile.agent));
         let range = before.min(after) * (1.0 + self.rule.beyond);
         Exit {
             direction: profile.direction(bearing_rad),
@@ -221,32 +159,27 @@ impl<'a> Scene<'a> {
             position: profile.at(bearing_rad, range),
             sector,
             width_rad: sector.width_rad,
-            width,
+            width: distance(jambs[0], jambs[1]),
             jambs,
             range,
-            kind: candidate.kind,
+            kind,
             score: parts.jump * parts.support * parts.width,
             parts,
         }
     }
 
-    /// Range of the wall just outside each edge; where nothing was seen, that of the other edge.
-    fn jamb_ranges(&self, run: Run) -> [f64; 2] {
-        let n = self.n();
-        let near = |first: usize, step: usize| {
-            (0..=self.half).find_map(|k| self.ranges[(first + k * step) % n])
-        };
-        let before = near(run.start + n - 1, n - 1);
-        let after = near(run.start + run.len, 1);
+    /// The wall just outside each edge, at the edge; the median range where none was seen.
+    fn jambs(&self, run: Run) -> [[f64; 3]; 2] {
+        let sector = run.sector(self.n());
         let usual = self.profile.median_range;
-        [
-            before.or(after).unwrap_or(usual),
-            after.or(before).unwrap_or(usual),
-        ]
+        let ranges = self
+            .contour
+            .jamb_ranges(run.start, run.len)
+            .unwrap_or([usual, usual]);
+        let ends = [sector.start_rad, sector.start_rad + sector.width_rad];
+        [0, 1].map(|k| self.profile.at(ends[k], ranges[k]))
     }
 }
 
-/// Grows from 0 to 1 with the number of points that speak for an opening.
-fn support(points: f64) -> f64 {
-    1.0 - (-points / 8.0).exp()
-}
+/// An empty run says that the wall is missing, not how far one could see.
+const GAP_JUMP: f64 = 0.5;

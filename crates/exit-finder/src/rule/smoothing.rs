@@ -28,20 +28,6 @@ pub(super) fn window_counts(bins: &[BinStats], half: usize) -> Vec<usize> {
         .collect()
 }
 
-/// Median of the known ranges within `half` bins of each bin.
-pub(super) fn surroundings(ranges: &[Option<f64>], half: usize) -> Vec<Option<f64>> {
-    let n = ranges.len();
-    let half = half.min((n - 1) / 2);
-    (0..n)
-        .map(|bin| {
-            let mut known: Vec<f64> = (bin + n - half..=bin + n + half)
-                .filter_map(|i| ranges[i % n])
-                .collect();
-            crate::profile::median(&mut known)
-        })
-        .collect()
-}
-
 fn stray_limit(bins: &[BinStats], half: usize) -> usize {
     let mut counts = window_counts(bins, half);
     counts.retain(|&count| count > 0);

@@ -1,6 +1,5 @@
 //! Sectors into which the camera never looked.
 
-use super::smoothing::window_counts;
 use crate::config::RangeAware;
 use crate::profile::RangeProfile;
 use crate::sector::{Run, circular_runs};
@@ -32,13 +31,27 @@ pub(super) fn unseen_bins(
     (0..n).map(|bin| empty[bin] && !seen(bin)).collect()
 }
 
-/// Points expected in a run were it a wall like the rest: the median density of the windows seen.
-pub(super) fn expected_points(profile: &RangeProfile, run: Run, half: usize) -> f64 {
-    let mut counts = window_counts(&profile.bins, half);
-    counts.retain(|&count| count > 0);
+/// Points that a run of this length holds elsewhere: in the poorest tenth of the runs that do not
+/// overlap it, and on average.
+pub(super) fn points_elsewhere(profile: &RangeProfile, run: Run) -> (f64, f64) {
+    let n = profile.bins.len();
+    let elsewhere = (run.start + run.len)..=(run.start + n).saturating_sub(run.len);
+    let mut counts: Vec<usize> = elsewhere
+        .map(|start| {
+            Run { start, ..run }
+                .bins(n)
+                .map(|bin| profile.bins[bin].count)
+                .sum()
+        })
+        .collect();
     counts.sort_unstable();
-    let usual = counts.get(counts.len() / 2).copied().unwrap_or(0);
-    usual as f64 / (2 * half + 1) as f64 * run.len as f64
+    let mean = counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64;
+    (
+        counts
+            .get(counts.len() / 10)
+            .map_or(0.0, |&count| count as f64),
+        mean,
+    )
 }
 
 fn flags_of(n: usize, runs: impl Iterator<Item = Run>) -> Vec<bool> {

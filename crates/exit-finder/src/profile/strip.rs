@@ -1,0 +1,117 @@
+//! The strip of elevations that a turning camera saw, and how far it leans.
+//!
+//! A camera that turns on the spot maps a strip of constant elevation. A monocular map's axes are those
+//! of its first frame, which is rarely level, so in the map the strip leans: its slope as a function of
+//! the bearing is s(θ) = s₀ + a cos θ + b sin θ, where (a, b) is the tilt of `up` and s₀ the pitch of the
+//! camera. The three numbers are fitted to the median slope (height / range) of 36 sectors by iteratively
+//! reweighted least squares (L1), with a weak pull of a and b to zero for partial scans.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::binning::Polar;
+use super::statistics::median;
+
+const SECTORS: usize = 36;
+/// Sectors with fewer points have no say.
+const MIN_POINTS: usize = 5;
+/// Pull of the tilt to zero, in sectors of unit residual.
+const PULL: f64 = 1.0;
+const ROUNDS: usize = 10;
+
+/// Slope s₀, a, b of the strip, height per range.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Strip {
+    /// Slope of the camera's axis, the same in all bearings.
+    pub pitch: f64,
+    /// Slope towards bearing 0 and towards a quarter turn.
+    pub tilt: [f64; 2],
+}
+
+impl Strip {
+    /// Slope of the middle of the strip in a bearing.
+    pub fn slope(&self, bearing_rad: f64) -> f64 {
+        let (sin, cos) = bearing_rad.sin_cos();
+        self.pitch + self.tilt[0] * cos + self.tilt[1] * sin
+    }
+
+    /// The strip of a cloud; level when there are too few points to tell.
+    pub(crate) fn of(polar: &[Polar]) -> Self {
+        let mut slopes: Vec<Vec<f64>> = vec![Vec::new(); SECTORS];
+        for p in polar {
+            let sector = (p.bearing / TAU * SECTORS as f64) as usize;
+            slopes[sector.min(SECTORS - 1)].push(p.height / p.range);
+        }
+        let samples: Vec<(Vector3<f64>, f64)> = slopes
+            .iter_mut()
+            .enumerate()
+            .filter(|(_, slopes)| slopes.len() >= MIN_POINTS)
+            .filter_map(|(sector, slopes)| {
+                let (sin, cos) = ((sector as f64 + 0.5) * TAU / SECTORS as f64).sin_cos();
+                Some((Vector3::new(1.0, cos, sin), median(slopes)?))
+            })
+            .collect();
+        fit(&samples)
+    }
+}
+
+fn fit(samples: &[(Vector3<f64>, f64)]) -> Strip {
+    let mut solution = Vector3::zeros();
+    let mut weights = vec![1.0; samples.len()];
+    for _ in 0..ROUNDS {
+        let mut normal = Matrix3::from_diagonal(&Vector3::new(0.0, PULL, PULL));
+        let mut right = Vector3::zeros();
+        for ((row, slope), weight) in samples.iter().zip(&weights) {
+            normal += row * row.transpose() * *weight;
+            right += row * (*weight * slope);
+        }
+        let Some(inverse) = normal.try_inverse() else {
+            return Strip::default();
+        };
+        solution = inverse * right;
+        for ((row, slope), weight) in samples.iter().zip(&mut weights) {
+            // Residuals below 0.05 (3 degrees) count fully, larger ones by their absolute value.
+            *weight = 1.0 / ((row.dot(&solution) - slope).abs() / 0.05).max(1.0);
+        }
+    }
+    if solution.iter().all(|x| x.is_finite()) {
+        Strip {
+            pitch: solution.x,
+            tilt: [solution.y, solution.z],
+        }
+    } else {
+        Strip::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn leaning(bearings: impl Iterator<Item = u32>) -> Vec<Polar> {
+        bearings
+            .flat_map(|degrees| {
+                let bearing = f64::from(degrees).to_radians();
+                let slope = -0.1 + 0.2 * bearing.cos() - 0.15 * bearing.sin();
+                (0..9).map(move |k| Polar {
+                    bearing,
+                    range: 2.0,
+                    height: 2.0 * (slope + 0.1 * (f64::from(k) - 4.0)),
+                })
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_full_turn_gives_pitch_and_tilt() {
+        let strip = Strip::of(&leaning((0..360).step_by(3)));
+        assert!((strip.pitch + 0.1).abs() < 0.02, "{strip:?}");
+        assert!((strip.tilt[0] - 0.2).abs() < 0.02 && (strip.tilt[1] + 0.15).abs() < 0.02);
+    }
+
+    #[test]
+    fn nothing_seen_is_level() {
+        assert_eq!(Strip::of(&[]), Strip::default());
+    }
+}

@@ -1,0 +1,50 @@
+//! Straight walls around an agent at the origin.
+//!
+//! A line that misses the origin is a x + b y = 1, so its inverse range is linear in the direction:
+//! 1 / r(θ) = a cos θ + b sin θ.
+
+/// A straight wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    a: f64,
+    b: f64,
+}
+
+impl Line {
+    /// The line through two points in plan; `None` when they and the agent are in line.
+    pub(super) fn through(p: [f64; 2], q: [f64; 2]) -> Option<Self> {
+        let area = p[0] * q[1] - p[1] * q[0];
+        let size = p[0].hypot(p[1]) * q[0].hypot(q[1]);
+        (area.abs() > 1e-9 * size).then(|| Self {
+            a: (q[1] - p[1]) / area,
+            b: (p[0] - q[0]) / area,
+        })
+    }
+
+    /// Inverse range in a direction; zero or less where the line is never met.
+    pub(super) fn inverse_range(&self, direction: [f64; 2]) -> f64 {
+        self.a * direction[0] + self.b * direction[1]
+    }
+
+    /// Distance of a point from the line, positive on the side away from the agent.
+    pub(super) fn distance_behind(&self, p: [f64; 2]) -> f64 {
+        (self.inverse_range(p) - 1.0) / self.a.hypot(self.b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_continues_along_itself() {
+        let line = Line::through([-1.0, 2.0], [3.0, 2.0]).unwrap();
+        for degrees in [10.0f64, 45.0, 90.0, 170.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            assert!((line.inverse_range([cos, sin]) - sin / 2.0).abs() < 1e-12);
+        }
+        assert!(line.inverse_range([0.0, -1.0]) < 0.0);
+        assert!((line.distance_behind([7.0, 5.0]) - 3.0).abs() < 1e-12);
+        assert_eq!(Line::through([1.0, 1.0], [2.0, 2.0]), None);
+    }
+}

@@ -1,0 +1,126 @@
+//! Precision and recall of the exits of generated rooms.
+
+use std::f64::consts::TAU;
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use exit_finder::{AffinePlane, Exit, ExitConfig, ExitView, find_exits};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::generator::{Opening, Scan, cleaned, corrupted, scan};
+
+/// What the rooms of one evaluation are like.
+#[derive(Debug, Clone)]
+pub struct Suite {
+    pub doors: RangeInclusive<usize>,
+    pub dark: bool,
+    pub rooms: u64,
+    pub first_seed: u64,
+    pub outliers: f64,
+    pub clean: bool,
+}
+
+impl Suite {
+    /// The scans, with outliers added and cleaned as the suite says.
+    pub fn scans(&self) -> Vec<Scan> {
+        (0..self.rooms)
+            .map(|room| {
+                let mut rng = Pcg64::seed_from_u64(self.first_seed + room);
+                let doors = rng.random_range(self.doors.clone());
+                let mut scan = scan(doors, self.dark, &mut rng);
+                scan.points = corrupted(&scan.points, scan.agent, self.outliers, &mut rng);
+                if self.clean {
+                    scan.points = cleaned(&scan.points, scan.agent);
+                }
+                scan
+            })
+            .collect()
+    }
+}
+
+/// Counts over many rooms.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct Score {
+    pub rooms: usize,
+    pub silent: usize,
+    pub right: usize,
+    pub wrong: usize,
+    pub best_right: usize,
+    pub best_wrong: usize,
+    pub found: usize,
+    pub missed: usize,
+}
+
+impl Score {
+    pub fn precision(&self) -> f64 {
+        share(self.right, self.wrong)
+    }
+
+    pub fn recall(&self) -> f64 {
+        share(self.found, self.missed)
+    }
+
+    /// Share of rooms with any exit whose best one is right.
+    pub fn best(&self) -> f64 {
+        share(self.best_right, self.best_wrong)
+    }
+
+    /// Share of rooms without any exit.
+    pub fn silence(&self) -> f64 {
+        share(self.silent, self.rooms - self.silent)
+    }
+
+    fn add(&mut self, scan: &Scan, exits: &[Exit]) {
+        self.rooms += 1;
+        self.silent += usize::from(exits.is_empty());
+        for (rank, exit) in exits.iter().enumerate() {
+            let right = scan.openings.iter().any(|opening| hits(exit, opening));
+            self.right += usize::from(right);
+            self.wrong += usize::from(!right);
+            if rank == 0 {
+                self.best_right += usize::from(right);
+                self.best_wrong += usize::from(!right);
+            }
+        }
+        for opening in scan.openings.iter().filter(|opening| opening.fair) {
+            let found = exits.iter().any(|exit| hits(exit, opening));
+            self.found += usize::from(found);
+            self.missed += usize::from(!found);
+        }
+    }
+}
+
+impl fmt::Display for Score {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [p, r, b] = [self.precision(), self.recall(), self.best()].map(|x| 100.0 * x);
+        write!(f, "precision {p:5.1}  recall {r:5.1}  best {b:5.1}")
+    }
+}
+
+fn share(part: usize, rest: usize) -> f64 {
+    part as f64 / (part + rest).max(1) as f64
+}
+
+/// The middle of the exit lies in the opening, three degrees to spare.
+fn hits(exit: &Exit, opening: &Opening) -> bool {
+    let spare = 3f64.to_radians();
+    (exit.bearing_rad - opening.start + spare).rem_euclid(TAU) < opening.width + 2.0 * spare
+}
+
+/// Compares the exits of all scans with the truth. A known scale gives the width a drone needs, 0.6 m.
+pub fn evaluate(scans: &[Scan], known_scale: bool, config: &ExitConfig) -> Score {
+    let mut score = Score::default();
+    for scan in scans {
+        let min_width = known_scale.then_some(0.6 * scan.scale);
+        let config = ExitConfig {
+            min_width,
+            ..*config
+        };
+        let plane = AffinePlane::from_up([0.0, 0.0, 1.0], scan.agent).unwrap();
+        let view = ExitView::default();
+        let report = find_exits(&scan.points, scan.agent, &plane, &view, &config).unwrap();
+        score.add(scan, &report.exits);
+    }
+    score
+}
