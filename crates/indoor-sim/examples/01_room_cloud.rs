@@ -3,6 +3,8 @@
 //! Run: `cargo run --release -p indoor-sim --example 01_room_cloud [WORLD] [SEED] [OUT.ply]`
 //! Flies a scan (up and down while turning), prints statistics of the map, and writes the points in world metres.
 
+#![allow(clippy::print_stdout, reason = "an example speaks to the terminal")]
+
 use core::time::Duration;
 use std::error::Error;
 use std::fmt::Write as _;

@@ -3,6 +3,8 @@
 //! Run: `cargo run --release -p indoor-sim --example 02_fly_commands [WORLD] [SEED]`
 //! Prints the state after each command, then the map and the truth.
 
+#![allow(clippy::print_stdout, reason = "an example speaks to the terminal")]
+
 use core::time::Duration;
 use std::error::Error;
 

@@ -1,5 +1,10 @@
 //! The same seed gives the same bits; another seed gives another flight.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a broken expectation must fail the test"
+)]
+
 use core::time::Duration;
 
 use indoor_sim::slam_bridge::{Map, SlamSource};

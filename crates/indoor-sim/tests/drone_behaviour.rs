@@ -1,5 +1,11 @@
 //! The drone obeys, errs, refuses, drains and crashes as it should.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a broken expectation must fail the test"
+)]
+
 use core::time::Duration;
 
 use indoor_sim::{DroneConfig, Phase, SimConfig, Simulator, World};

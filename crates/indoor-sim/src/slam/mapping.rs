@@ -97,12 +97,6 @@ impl Mapping {
         }
     }
 
-    /// The point of a landmark, if the map has one.
-    pub(crate) fn point_of(&self, landmark: u32) -> Option<&Point> {
-        self.points
-            .get(*self.owner.get(landmark as usize)? as usize)
-    }
-
     /// Adds a keyframe: matched points get a view, other landmarks are remembered and triangulated where two keyframes
     /// see them with enough parallax.
     pub(crate) fn insert(

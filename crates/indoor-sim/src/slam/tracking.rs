@@ -338,12 +338,8 @@ impl SyntheticSlam {
                 rng: &mut self.rng,
             },
         );
-        let known = detections.iter().filter(|d| {
-            self.mapping
-                .point_of(d.landmark)
-                .is_some_and(|point| point.outlier.is_none())
-        });
-        last.keyframe_tracked = (known.count() as f64 * self.config.match_chance) as usize;
+        // The next frames say what can be expected to be tracked.
+        last.keyframe_tracked = 0;
     }
 }
 

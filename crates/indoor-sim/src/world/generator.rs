@@ -179,7 +179,7 @@ fn stands_in_the_way(plan: &FloorPlan, item: &Furniture) -> bool {
         (0..2).all(|axis| item.min[axis] < other.max[axis] && other.min[axis] < item.max[axis])
     });
     overlaps
-        || near(plan.start.position, 0.6)
+        || near(plan.start.position, 0.9)
         || plan
             .doors
             .iter()

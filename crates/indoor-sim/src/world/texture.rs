@@ -10,7 +10,7 @@ use crate::random::uniform;
 /// Densities of the paint. Calibrated against real maps (see the crate's documentation), not measured on surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureConfig {
-    /// Share of wall panels (pieces of a wall about 1 m wide) without any texture, 0..=0.5.
+    /// Share of wall panels (pieces of a wall 1 m wide and half as high as the room) without any texture, 0..=0.5.
     pub blank_share: f64,
     /// Landmarks per square metre on panels that are not blank, outside of patches.
     pub background: f64,
@@ -29,16 +29,19 @@ pub struct TextureConfig {
 impl Default for TextureConfig {
     fn default() -> Self {
         Self {
-            blank_share: 0.38,
-            background: 110.0,
-            patch: 850.0,
-            furniture: 380.0,
+            blank_share: 0.42,
+            background: 140.0,
+            patch: 1000.0,
+            furniture: 450.0,
             floor: 25.0,
             ceiling: 5.0,
-            edge: 45.0,
+            edge: 50.0,
         }
     }
 }
+
+/// Where the upper row of panels begins, relative to the height of the room.
+const ROW_BORDER: f64 = 0.5;
 
 /// Greatest width of a panel, metres.
 const PANEL: f64 = 1.05;
@@ -141,32 +144,42 @@ impl<R: Rng> Painter<'_, R> {
         }
     }
 
-    /// A wall: panels, each blank or with a background and perhaps a patch.
+    /// A wall: an upper and a lower row of panels, each panel blank or with a background and a patch.
     fn paint_wall(&mut self, face: &Face) {
-        let horizontal = usize::from(face.axes()[0] == 2);
-        let vertical = 1 - horizontal;
-        let length = face.high[horizontal] - face.low[horizontal];
+        let vertical = usize::from(face.axes()[1] == 2);
+        let [bottom, top] = [face.low[vertical], face.high[vertical]];
+        let middle = self.plan.height * ROW_BORDER;
+        for (from, to) in [(bottom, middle.min(top)), (middle.max(bottom), top)] {
+            if to > from {
+                let (mut low, mut high) = (face.low, face.high);
+                (low[vertical], high[vertical]) = (from, to);
+                self.paint_row(&face.part(low, high), 1 - vertical);
+            }
+        }
+    }
+
+    /// A row of panels; blank ones never stand side by side: people hang something on an empty wall.
+    fn paint_row(&mut self, row: &Face, horizontal: usize) {
+        let length = row.high[horizontal] - row.low[horizontal];
         let panels = (length / PANEL).ceil().max(1.0);
         let mut blank = false;
         for number in 0..panels as usize {
-            let (mut low, mut high) = (face.low, face.high);
-            low[horizontal] = face.low[horizontal] + length * number as f64 / panels;
-            high[horizontal] = face.low[horizontal] + length * (number + 1) as f64 / panels;
-            // Never two side by side: people hang something on an empty wall. The chance keeps the share as asked.
+            let (mut low, mut high) = (row.low, row.high);
+            low[horizontal] = row.low[horizontal] + length * number as f64 / panels;
+            high[horizontal] = row.low[horizontal] + length * (number + 1) as f64 / panels;
+            // The chance after a textured panel is such that the share comes out as asked.
             let chance = if blank {
                 0.0
             } else {
                 odds(self.config.blank_share)
             };
             blank = self.rng.random::<f64>() < chance;
-            let vivid = uniform(self.rng, 0.6, 1.4);
-            let panel = face.part(low, high);
-            if blank {
-                continue;
+            if !blank {
+                let panel = row.part(low, high);
+                let vivid = uniform(self.rng, 0.6, 1.4) * self.room_texture(&panel);
+                self.scatter(&panel, self.config.background * vivid);
+                self.paint_patch(&panel, horizontal, vivid);
             }
-            let vivid = vivid * self.room_texture(&panel);
-            self.scatter(&panel, self.config.background * vivid);
-            self.paint_patch(&panel, horizontal, vertical, vivid);
         }
     }
 
@@ -183,8 +196,9 @@ impl<R: Rng> Painter<'_, R> {
     }
 
     /// A picture, a shelf or a window somewhere on a panel.
-    fn paint_patch(&mut self, panel: &Face, horizontal: usize, vertical: usize, vivid: f64) {
-        let size = [uniform(self.rng, 0.3, 1.0), uniform(self.rng, 0.4, 1.3)];
+    fn paint_patch(&mut self, panel: &Face, horizontal: usize, vivid: f64) {
+        let vertical = 1 - horizontal;
+        let size = [uniform(self.rng, 0.3, 0.9), uniform(self.rng, 0.3, 0.9)];
         let (mut low, mut high) = (panel.low, panel.high);
         for (axis, size) in [(horizontal, size[0]), (vertical, size[1])] {
             let room = panel.high[axis] - panel.low[axis];
@@ -290,7 +304,7 @@ impl<R: Rng> Painter<'_, R> {
         bonus: f64,
     ) {
         let strength = (self.rng.random::<f64>() + bonus).min(1.0);
-        let far = 2.2 * (uniform(self.rng, 0.0, 1.0) * 1.7).exp();
+        let far = 1.2 * (2.3 * self.rng.random::<f64>()).exp();
         let outside: [f64; 3] = core::array::from_fn(|axis| position[axis] + 0.01 * normal[axis]);
         let buried = self
             .solids
