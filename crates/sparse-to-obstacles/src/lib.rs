@@ -14,6 +14,6 @@ pub use kmeans::{
     Clustering, KMeansConfig, KMeansError, KMeansMethod, KMeansSeeding, KMeansStop, kmeans,
     kmeans_from,
 };
-pub use obstacle::{FirstContact, ObstacleConfig, ObstacleError, ObstacleSet};
+pub use obstacle::{FirstContact, ObstacleConfig, ObstacleError, ObstacleSet, ObstacleUpdate};
 pub use point::PointLike;
 pub use space::Space;

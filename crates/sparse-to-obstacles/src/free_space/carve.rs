@@ -164,10 +164,11 @@ impl<'a> Carver<'a> {
                     let share = dot(offset, along) / length_squared;
                     let aside = norm_squared(sub(offset, scale(along, share)));
                     let radius_squared = (widening * share).powi(2) * length_squared;
-                    if (0.0..=1.0).contains(&share) && aside <= radius_squared {
-                        if let Some(index) = self.grid.index(cell) {
-                            self.evidence[index].cross(keyframe, *self.rays);
-                        }
+                    if (0.0..=1.0).contains(&share)
+                        && aside <= radius_squared
+                        && let Some(index) = self.grid.index(cell)
+                    {
+                        self.evidence[index].cross(keyframe, *self.rays);
                     }
                 }
             }

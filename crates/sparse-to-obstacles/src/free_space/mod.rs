@@ -97,7 +97,8 @@ impl FreeSpace {
     }
 
     /// Adds rays and surface points of a map that has grown. Rays with the same origin belong to the
-    /// same keyframe, also across calls. On an error nothing is added.
+    /// same keyframe, also across calls, but the space between rays is carved only among those of one
+    /// call: pass all rays of a keyframe at once. On an error nothing is added.
     ///
     /// # Errors
     /// As [`from_rays`](Self::from_rays).

@@ -74,6 +74,12 @@ impl Axes {
     }
 }
 
+/// The first principal axis and the extent along it. `points` must not be empty.
+pub(crate) fn longest_axis(points: &[Vec3]) -> (Vec3, f64) {
+    let axes = Axes::of(points);
+    (axes.directions[0], axes.extent()[0])
+}
+
 fn mean(points: &[Vec3]) -> Vec3 {
     // Relative to the first point, so that a far origin costs no digits.
     let first = points[0];

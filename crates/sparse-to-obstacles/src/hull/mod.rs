@@ -7,6 +7,7 @@ mod oriented_box;
 mod polygon;
 mod polytope;
 
+pub(crate) use axes::longest_axis;
 pub(crate) use build::build;
 pub(crate) use gjk::separation;
 

@@ -12,11 +12,13 @@ pub struct ObstacleConfig {
     /// Largest extent of an obstacle along its longest principal axis; clusters beyond it are split at
     /// their largest gap. More than 0; infinite (the default, and the paper) never splits.
     pub max_diameter: f64,
-    /// How many rays may cross a hull, each longer than the distance it keeps inside, before the hull is
-    /// taken to span a gap and is split. Only with
+    /// How many rays may cross a hull before it is taken to span a gap and is split. Only with
     /// [`from_observed_points`](crate::ObstacleSet::from_observed_points). At least 1. Default 3.
     pub max_piercing_rays: usize,
-    /// Clusters of fewer points are never split. At least 2. Default 4.
+    /// Share of a ray before its end that proves nothing, because the range of a sparse point is
+    /// uncertain. 0 to below 1. Default 0.1.
+    pub ray_margin: f64,
+    /// Clusters of fewer points are not split on account of rays. At least 2. Default 4.
     pub min_split_points: usize,
 }
 
@@ -26,6 +28,7 @@ impl Default for ObstacleConfig {
             kmeans: KMeansConfig::default(),
             max_diameter: f64::INFINITY,
             max_piercing_rays: 3,
+            ray_margin: 0.1,
             min_split_points: 4,
         }
     }
@@ -58,6 +61,11 @@ impl ObstacleConfig {
         }
         if self.max_piercing_rays == 0 {
             return Err(ObstacleError::NoPiercingRays);
+        }
+        if !(0.0..1.0).contains(&self.ray_margin) {
+            return Err(ObstacleError::RayMargin {
+                ray_margin: self.ray_margin,
+            });
         }
         if self.min_split_points < 2 {
             let min_split_points = self.min_split_points;

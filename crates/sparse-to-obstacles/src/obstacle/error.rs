@@ -19,6 +19,12 @@ pub enum ObstacleError {
     /// `max_piercing_rays` is zero.
     #[error("max_piercing_rays is 0: allow at least 1, or build without rays")]
     NoPiercingRays,
+    /// `ray_margin` is not a share.
+    #[error("ray_margin is {ray_margin}: it must be from 0 to below 1")]
+    RayMargin {
+        /// The value given.
+        ray_margin: f64,
+    },
     /// `min_split_points` is too small.
     #[error(
         "min_split_points is {min_split_points}: a cluster needs at least 2 points to be split"

@@ -5,14 +5,18 @@ mod config;
 mod error;
 mod export;
 mod query;
+mod split;
+mod update;
 
-pub(crate) use bvh::{Aabb, Bvh};
+use bvh::{Aabb, Bvh};
 pub use config::ObstacleConfig;
 pub use error::ObstacleError;
 pub use query::FirstContact;
+pub use update::ObstacleUpdate;
 
+use crate::free_space::Ray;
 use crate::hull::{self, Hull};
-use crate::kmeans::{Clustering, kmeans};
+use crate::kmeans::{Clustering, KMeansError};
 use crate::point::{PointLike, finite_points};
 use crate::vector::Vec3;
 use rand::Rng;
@@ -21,12 +25,14 @@ use rand::Rng;
 ///
 /// The obstacles are the hulls themselves. Every query takes the radius of the moving ball, which is the
 /// exact Minkowski sum of hull and ball: rounded edges and corners, no pushed planes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ObstacleSet {
     hulls: Vec<Hull>,
     bvh: Bvh,
     inertia: f64,
     centroids: Vec<Vec3>,
+    /// The points that the hulls were built from.
+    points: Vec<Vec3>,
 }
 
 impl ObstacleSet {
@@ -55,14 +61,24 @@ impl ObstacleSet {
         config: &ObstacleConfig,
         rng: &mut impl Rng,
     ) -> Result<Self, ObstacleError> {
-        config.validate()?;
-        if points.is_empty() {
-            return Ok(ObstacleSet::from_hulls(Vec::new(), 0.0, Vec::new()));
-        }
-        let mut kmeans_config = config.kmeans.clone();
-        kmeans_config.clusters = kmeans_config.clusters.min(points.len());
-        let clustering = kmeans(points, &kmeans_config, rng)?;
-        ObstacleSet::from_clustering(points, &clustering)
+        ObstacleSet::from_observed_points(points, &[], config, rng)
+    }
+
+    /// As [`from_points`](Self::from_points), and splits the clusters that the camera has seen through:
+    /// an obstacle must not bridge a doorway. `rays` are lines of sight from keyframes to points; a hull
+    /// that more than [`ObstacleConfig::max_piercing_rays`] cross is cut in two, again and again.
+    ///
+    /// # Errors
+    /// As [`from_points`](Self::from_points), and a ray that is not finite.
+    pub fn from_observed_points<P: PointLike>(
+        points: &[P],
+        rays: &[Ray],
+        config: &ObstacleConfig,
+        rng: &mut impl Rng,
+    ) -> Result<Self, ObstacleError> {
+        let mut set = ObstacleSet::default();
+        set.update(points, rays, config, rng)?;
+        Ok(set)
     }
 
     /// The hulls of an existing partition. Labels beyond the centroids, or missing ones, are ignored.
@@ -73,8 +89,7 @@ impl ObstacleSet {
         points: &[P],
         clustering: &Clustering,
     ) -> Result<Self, ObstacleError> {
-        let points =
-            finite_points(points).map_err(|index| crate::KMeansError::NotFinite { index })?;
+        let points = finite_points(points).map_err(|index| KMeansError::NotFinite { index })?;
         let mut members = vec![Vec::new(); clustering.centroids.len()];
         for (index, &label) in clustering.labels.iter().enumerate().take(points.len()) {
             if let Some(members) = members.get_mut(label) {
@@ -83,22 +98,19 @@ impl ObstacleSet {
         }
         members.retain(|members| !members.is_empty());
         let hulls = build_hulls(&points, members);
-        let centroids = clustering.centroids.clone();
-        Ok(ObstacleSet::from_hulls(
-            hulls,
-            clustering.inertia,
-            centroids,
-        ))
+        let mut set = ObstacleSet {
+            inertia: clustering.inertia,
+            ..ObstacleSet::default()
+        };
+        set.centroids.clone_from(&clustering.centroids);
+        set.replace(hulls, points);
+        Ok(set)
     }
 
-    fn from_hulls(hulls: Vec<Hull>, inertia: f64, centroids: Vec<Vec3>) -> Self {
-        let bvh = Bvh::new(hulls.iter().map(|hull| Aabb::of(&hull.vertices)).collect());
-        ObstacleSet {
-            hulls,
-            bvh,
-            inertia,
-            centroids,
-        }
+    fn replace(&mut self, hulls: Vec<Hull>, points: Vec<Vec3>) {
+        self.bvh = Bvh::new(hulls.iter().map(|hull| Aabb::of(&hull.vertices)).collect());
+        self.hulls = hulls;
+        self.points = points;
     }
 
     /// The obstacles, in the order of their clusters.

@@ -147,9 +147,7 @@ fn input_that_is_not_finite_is_never_free() {
     let refused = ObstacleSet::from_points(&nan, &ObstacleConfig::default(), &mut rng(1));
     assert!(matches!(
         refused,
-        Err(ObstacleError::KMeans(crate::KMeansError::NotFinite {
-            index: 1
-        }))
+        Err(ObstacleError::KMeans(KMeansError::NotFinite { index: 1 }))
     ));
 }
 
@@ -184,4 +182,117 @@ fn exports_count_what_they_hold() {
     assert!(ply.contains(&format!("element vertex {vertices}\n")));
     let header = ply.lines().take_while(|&line| line != "end_header").count() + 1;
     assert_eq!(ply.lines().count(), header + vertices + faces);
+}
+
+/// Two pieces of wall at x = 2 with a doorway between y = -0.5 and 0.5.
+fn doorway() -> Vec<Vec3> {
+    let column = |y: f64| (0..20).map(move |i| [2.0, y, 0.1 * f64::from(i)]);
+    let sides = (0..15).flat_map(|i| [0.5 + 0.1 * f64::from(i), -0.5 - 0.1 * f64::from(i)]);
+    sides.flat_map(column).collect()
+}
+
+#[test]
+fn a_cluster_that_rays_cross_does_not_bridge_a_doorway() {
+    let points = doorway();
+    let rays: Vec<Ray> = (0..20)
+        .map(|i| Ray {
+            origin: [0.0, 0.0, 1.0],
+            end: [5.0, 0.05 * f64::from(i) - 0.5, 1.0],
+        })
+        .collect();
+    let config = ObstacleConfig::with_clusters(1);
+    let through = |set: &ObstacleSet| set.motion_is_free([1.0, 0.0, 1.0], [3.0, 0.0, 1.0], 0.2);
+    let bridged = ObstacleSet::from_points(&points, &config, &mut rng(1)).unwrap();
+    assert!(!through(&bridged));
+    let split = ObstacleSet::from_observed_points(&points, &rays, &config, &mut rng(1)).unwrap();
+    assert_eq!(split.len(), 2);
+    assert!(through(&split));
+    assert!(!split.motion_is_free([1.0, 1.0, 1.0], [3.0, 1.0, 1.0], 0.2));
+    let few = ObstacleSet::from_observed_points(&points, &rays[..3], &config, &mut rng(1)).unwrap();
+    assert!(!through(&few));
+}
+
+#[test]
+fn rays_that_end_on_an_obstacle_do_not_split_it() {
+    let points: Vec<Vec3> = (0..100)
+        .map(|i| [2.0, 0.1 * f64::from(i % 10), 0.1 * f64::from(i / 10)])
+        .collect();
+    let rays: Vec<Ray> = points
+        .iter()
+        .map(|&end| Ray {
+            origin: [0.0, 0.5, 0.5],
+            end,
+        })
+        .collect();
+    let config = ObstacleConfig::with_clusters(1);
+    let set = ObstacleSet::from_observed_points(&points, &rays, &config, &mut rng(1)).unwrap();
+    assert_eq!(set.len(), 1);
+}
+
+#[test]
+fn the_diameter_is_bounded_and_no_point_is_lost() {
+    let mut rng = rng(6);
+    let points: Vec<Vec3> = (0..300).map(|_| random_point(&mut rng)).collect();
+    let config = ObstacleConfig {
+        max_diameter: 2.0,
+        ..ObstacleConfig::with_clusters(3)
+    };
+    let set = ObstacleSet::from_points(&points, &config, &mut rng).unwrap();
+    let mut seen: Vec<usize> = set
+        .obstacles()
+        .iter()
+        .flat_map(|hull| hull.point_indices.iter().copied())
+        .collect();
+    seen.sort_unstable();
+    assert_eq!(seen, (0..points.len()).collect::<Vec<_>>());
+    for hull in set.obstacles() {
+        let own: Vec<Vec3> = hull
+            .point_indices
+            .iter()
+            .map(|&index| points[index])
+            .collect();
+        assert!(hull::longest_axis(&own).1 <= 2.0);
+    }
+    let duplicates = [[1.0, 2.0, 3.0]; 9];
+    let rays = [Ray {
+        origin: [0.0, 2.0, 3.0],
+        end: [9.0, 2.0, 3.0],
+    }; 9];
+    let config = ObstacleConfig {
+        max_diameter: 1e-9,
+        ..ObstacleConfig::with_clusters(2)
+    };
+    let set = ObstacleSet::from_observed_points(&duplicates, &rays, &config, &mut rng).unwrap();
+    assert_eq!(set.degenerate_count(), set.len());
+}
+
+#[test]
+fn an_update_takes_over_what_did_not_change() {
+    let mut rng = rng(7);
+    let points = blobs(60, &mut rng);
+    let config = ObstacleConfig::with_clusters(60);
+    let mut set = ObstacleSet::from_points(&points, &config, &mut rng).unwrap();
+    let mut grown = points.clone();
+    grown.extend(
+        points[..12]
+            .iter()
+            .map(|&point| add(point, [0.01, 0.0, 0.0])),
+    );
+    let update = set.update(&grown, &[], &config, &mut rng).unwrap();
+    assert_eq!(update.reused + update.built, set.len());
+    assert!(update.reused >= 45, "{update:?}");
+    for hull in set.obstacles() {
+        for &index in &hull.point_indices {
+            let point = grown[index];
+            assert!(hull::separation(&hull.vertices, point, point, f64::NAN).upper < 1e-8);
+        }
+    }
+    assert!(
+        set.update(&[[f64::NAN; 3]], &[], &config, &mut rng)
+            .is_err()
+    );
+    assert_eq!(set.len(), update.reused + update.built);
+    let none: [Vec3; 0] = [];
+    set.update(&none, &[], &config, &mut rng).unwrap();
+    assert!(set.is_empty());
 }
