@@ -3,6 +3,7 @@
 mod args;
 mod command;
 mod failure;
+mod flight;
 mod input;
 mod logging;
 mod output;

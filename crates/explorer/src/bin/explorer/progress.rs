@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 /// A line that says what is being done.
 #[derive(Debug)]
@@ -19,22 +19,8 @@ impl Progress {
         Self { bar }
     }
 
-    /// A line that also counts to `length`.
-    pub(crate) fn counting(step: &str, length: u64) -> Self {
-        let bar = ProgressBar::new(length);
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg} ({elapsed})") {
-            bar.set_style(style);
-        }
-        bar.set_message(step.to_owned());
-        Self { bar }
-    }
-
     pub(crate) fn step(&self, step: impl Into<String>) {
         self.bar.set_message(step.into());
-    }
-
-    pub(crate) fn reach(&self, position: u64) {
-        self.bar.set_position(position);
     }
 }
 

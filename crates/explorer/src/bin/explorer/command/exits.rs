@@ -9,6 +9,9 @@ use crate::input::{self, LoadedMap};
 use crate::output::deliver;
 use crate::plot::{Figure, TopView, color, scene};
 
+/// Most exits that the text lists.
+const LISTED: usize = 6;
+
 /// The command's JSON object.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct ExitsReport {
@@ -48,6 +51,7 @@ pub(crate) fn run(arguments: &Exits, output: &Output) -> Result<(), Failure> {
         arguments.position,
         arguments.up,
         arguments.rule,
+        None,
     )?;
     deliver(output, &report, &text(&report, loaded.unit()), || {
         let subtitle = headline(&report);
@@ -55,17 +59,18 @@ pub(crate) fn run(arguments: &Exits, output: &Output) -> Result<(), Failure> {
     })
 }
 
-/// Looks for exits among these points.
+/// Looks for exits among these points, at least `min_width` map units wide.
 pub(crate) fn exits(
     loaded: &LoadedMap,
     points: &[[f64; 3]],
     position: Vector,
     up: Vector,
     rule: ExitRule,
+    min_width: Option<f64>,
 ) -> Result<ExitsReport, Failure> {
     let plane = AffinePlane::from_up(up, position).map_err(Failure::internal)?;
     let config = match rule {
-        ExitRule::RangeAware => ExitConfig::default(),
+        ExitRule::RangeAware => ExitConfig { min_width, ..ExitConfig::default() },
         ExitRule::Paper => ExitConfig::paper(),
     };
     let gazes = gazes(loaded);
@@ -122,7 +127,7 @@ fn headline(report: &ExitsReport) -> String {
 /// A line for each exit.
 pub(crate) fn text(report: &ExitsReport, unit: &str) -> String {
     let mut text = headline(report);
-    for (rank, exit) in report.exits.iter().enumerate() {
+    for (rank, exit) in report.exits.iter().enumerate().take(LISTED) {
         let [x, y, z] = exit.direction;
         text.push_str(&format!(
             "\n{}. direction {x:.3},{y:.3},{z:.3}, {:.0} degrees wide, {:.2} {unit} away, score {:.2} ({})",
@@ -132,6 +137,9 @@ pub(crate) fn text(report: &ExitsReport, unit: &str) -> String {
             exit.score,
             exit.kind,
         ));
+    }
+    if let Some(more) = report.exits.len().checked_sub(LISTED + 1) {
+        text.push_str(&format!("\nand {} more (--json lists all)", more + 1));
     }
     text
 }

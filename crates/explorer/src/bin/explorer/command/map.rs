@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::deliver;
 use crate::planning::{Question, RADIUS_M, Surroundings, surroundings};
-use crate::plot::{Figure, TopView, scene};
+use crate::plot::{Figure, TopView, color, scene};
 use crate::progress::Progress;
 use crate::stopwatch::timed;
 
@@ -94,16 +94,16 @@ fn pipeline(
     progress: &Progress,
 ) -> Result<Outcome, Failure> {
     let (position, up) = (arguments.position, arguments.up);
+    let units = loaded.units_per_meter(Some(position));
+    let radius = arguments.radius.unwrap_or(RADIUS_M * units);
     progress.step("removing outliers");
     let clean = clean::clean(loaded, CleanMethod::Submodular, 1)?;
     let points = at(&loaded.points, &clean.kept_indices);
     progress.step("looking for exits");
     let (exits, exits_seconds) =
-        timed(|| exits::exits(loaded, &points, position, up, ExitRule::RangeAware));
+        timed(|| exits::exits(loaded, &points, position, up, ExitRule::RangeAware, Some(2.0 * radius)));
     let exits = exits?;
     progress.step("building obstacles");
-    let units = loaded.units_per_meter(Some(position));
-    let radius = arguments.radius.unwrap_or(RADIUS_M * units);
     let (built, seconds) = timed(|| {
         let kept = &clean.kept_indices;
         let mut built = surroundings(loaded, kept, arguments.clusters, units, seed)?;
@@ -256,7 +256,7 @@ fn figure(loaded: &LoadedMap, outcome: &Outcome, arguments: &Pipeline) -> Result
     let view = TopView::new(arguments.up, loaded.unit()).map_err(Failure::internal)?;
     let kept = at(&loaded.points, &outcome.clean.kept_indices);
     let removed = at(&loaded.points, &outcome.clean.removed_indices);
-    let mut layers = vec![scene::outliers(&view, &removed)];
+    let mut layers = vec![scene::cloud("removed", color::REMOVED, &view, &removed).opacity(0.45)];
     layers.extend(obstacles::layers(&view, &kept, &outcome.built));
     if let Some(found) = &outcome.exits.found {
         layers.extend(scene::exits(&view, found));

@@ -129,9 +129,9 @@ pub(crate) fn text(report: &PlanReport) -> String {
                 .map_or("no obstacle".to_owned(), |c| format!("{c:.3}"));
             format!(
                 "path of {} legs, {length:.3} map units long ({raw:.3} before refinement), least clearance \
-                 {clearance}, through {} space, in {:.3} s",
+                 {clearance}, {}, in {:.3} s",
                 report.path.len().saturating_sub(1),
-                report.space,
+                if report.space == "hulls" { "among hulls" } else { "through proven-free space" },
                 report.seconds
             )
         }

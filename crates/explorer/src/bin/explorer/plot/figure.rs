@@ -17,7 +17,7 @@ pub(crate) mod color {
     pub(crate) const FREE: Color = (150, 206, 214);
     pub(crate) const RAW_PATH: Color = (236, 130, 38);
     pub(crate) const PATH: Color = (24, 100, 210);
-    pub(crate) const FLOWN: Color = (20, 20, 24);
+    pub(crate) const WALL: Color = (70, 74, 82);
 }
 
 /// A picture of things in one plane, equal scale on both axes.

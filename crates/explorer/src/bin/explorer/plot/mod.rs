@@ -11,5 +11,5 @@ pub(crate) mod scene;
 mod shapes;
 
 pub(crate) use axes::TopView;
-pub(crate) use figure::{Figure, Layer, color};
+pub(crate) use figure::{Figure, Layer, Shape, color};
 pub(crate) use save::save;
