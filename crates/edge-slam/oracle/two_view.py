@@ -91,4 +91,5 @@ def main():
             print("   ", " ".join(f"{v:.3f}" if not isinstance(v, str) else v for v in r))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -9,7 +9,9 @@ pub mod depth;
 pub mod edge;
 pub mod evaluation;
 pub mod feature;
+pub mod fusion;
 pub mod image;
+pub mod pnp;
 #[cfg(feature = "image-files")]
 pub mod sequence;
 mod simd;

@@ -1,0 +1,322 @@
+//! Pose of a camera from points it sees, refined from a guess (perspective-n-point).
+//!
+//! ```text
+//! minimise over T   Σᵢ ρ( ‖π(T Xᵢ) − uᵢ‖² / σᵢ² )      ρ Huber, left update T ← (Exp(ω), v) T
+//! ∂π/∂[v, ω] = J_π [ I | −p̂ ]                          p = T X
+//! ```
+
+use nalgebra::{
+    Isometry3, Matrix2x6, Matrix6, Point2, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
+};
+
+use crate::camera::PinholeCamera;
+
+/// A map point and the pixel that shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// World frame.
+    pub point: Point3<f64>,
+    /// Undistorted pixel.
+    pub pixel: Point2<f64>,
+    /// Standard deviation of the pixel, pixels, positive: 1.2^octave for ORB.
+    pub sigma: f64,
+}
+
+/// Parameters of [`refine_pose`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PnpConfig {
+    /// Residual, in σ, beyond which the loss is linear, > 0. Default 2.45 (χ² 5.99 at two degrees of freedom).
+    pub huber: f64,
+    /// Residual, in σ, up to which an observation is an inlier, > 0. Default 2.45.
+    pub inlier: f64,
+    /// Most steps, in two rounds, the second without outliers. Default 20.
+    pub iterations: usize,
+    /// Fewest observations in front of the camera, and fewest inliers at the end, >= 4. Default 10.
+    pub min_inliers: usize,
+}
+
+impl Default for PnpConfig {
+    fn default() -> Self {
+        Self {
+            huber: 2.45,
+            inlier: 2.45,
+            iterations: 20,
+            min_inliers: 10,
+        }
+    }
+}
+
+/// Why a pose was not refined.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PnpError {
+    /// Not enough observations agree with one pose.
+    #[error("{inliers} of {observations} observations agree with a pose, {needed} are needed")]
+    TooFewInliers {
+        /// Observations that agree.
+        inliers: usize,
+        /// Observations handed in.
+        observations: usize,
+        /// Observations needed.
+        needed: usize,
+    },
+    /// The observations do not determine all six degrees of freedom.
+    #[error("the observations do not determine the pose: all points lie on a line or in one place")]
+    Singular,
+}
+
+/// A refined pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PnpPose {
+    /// Takes world points to the camera.
+    pub camera_from_world: Isometry3<f64>,
+    /// Covariance of the left update [v, ω], from the inliers.
+    pub covariance: Matrix6<f64>,
+    /// Indices of the observations that agree, ascending.
+    pub inliers: Vec<usize>,
+    /// Root mean square residual of the inliers, in σ.
+    pub rms: f64,
+}
+
+/// Refines a pose by Levenberg-Marquardt with Huber's loss, drops outliers half way, and tells its covariance.
+///
+/// Observations with a coordinate that is not finite or a σ that is not positive are outliers.
+/// Cost: O(observations · iterations).
+///
+/// # Errors
+/// [`PnpError`] when too few observations agree or they leave a degree of freedom open.
+pub fn refine_pose(
+    observations: &[Observation],
+    camera: &PinholeCamera,
+    guess: &Isometry3<f64>,
+    config: &PnpConfig,
+) -> Result<PnpPose, PnpError> {
+    let problem = Problem {
+        observations,
+        camera,
+        huber: config.huber,
+    };
+    let usable = |&i: &usize| {
+        let o = &observations[i];
+        let finite = o
+            .point
+            .iter()
+            .chain(o.pixel.iter())
+            .all(|value| value.is_finite());
+        finite && o.sigma > 0.0 && o.sigma.is_finite()
+    };
+    let all: Vec<usize> = (0..observations.len()).filter(usable).collect();
+    let rounds = config.iterations.div_ceil(2);
+    let coarse = problem.minimise(guess, &all, rounds)?;
+    let inliers = problem.inliers(&coarse, &all, 2.0 * config.inlier);
+    let pose = problem.minimise(&coarse, &inliers, rounds)?;
+    let inliers = problem.inliers(&pose, &all, config.inlier);
+    let needed = config.min_inliers.max(4);
+    if inliers.len() < needed {
+        let observations = observations.len();
+        return Err(PnpError::TooFewInliers {
+            inliers: inliers.len(),
+            observations,
+            needed,
+        });
+    }
+    let (normal, _, square) = problem.normal_equations(&pose, &inliers);
+    let covariance = normal.try_inverse().ok_or(PnpError::Singular)?;
+    #[expect(clippy::cast_precision_loss, reason = "small counts")]
+    let rms = (square / inliers.len() as f64).sqrt();
+    Ok(PnpPose {
+        camera_from_world: pose,
+        covariance,
+        inliers,
+        rms,
+    })
+}
+
+/// T <- (Exp(ω), v) T for a step [v, ω].
+fn moved(pose: &Isometry3<f64>, step: &Vector6<f64>) -> Isometry3<f64> {
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(step[3], step[4], step[5]));
+    Isometry3::from_parts(Translation3::new(step[0], step[1], step[2]), turn) * pose
+}
+
+struct Problem<'a> {
+    observations: &'a [Observation],
+    camera: &'a PinholeCamera,
+    huber: f64,
+}
+
+impl Problem<'_> {
+    /// Residual over σ, and its Jacobian by [v, ω].
+    fn residual(
+        &self,
+        pose: &Isometry3<f64>,
+        index: usize,
+    ) -> Option<(nalgebra::Vector2<f64>, Matrix2x6<f64>)> {
+        let o = &self.observations[index];
+        let p = pose * o.point;
+        let residual = (self.camera.project(&p)? - o.pixel) / o.sigma;
+        let by_point = self.camera.jacobian(&p) / o.sigma;
+        let mut jacobian = Matrix2x6::zeros();
+        jacobian.fixed_columns_mut::<3>(0).copy_from(&by_point);
+        jacobian
+            .fixed_columns_mut::<3>(3)
+            .copy_from(&(-by_point * p.coords.cross_matrix()));
+        Some((residual, jacobian))
+    }
+
+    fn minimise(
+        &self,
+        start: &Isometry3<f64>,
+        chosen: &[usize],
+        iterations: usize,
+    ) -> Result<Isometry3<f64>, PnpError> {
+        let mut pose = *start;
+        let mut damping = 1e-4;
+        let mut cost = self.cost(&pose, chosen);
+        for _ in 0..iterations {
+            let (normal, gradient, _) = self.normal_equations(&pose, chosen);
+            let mut damped = normal;
+            (0..6).for_each(|k| damped[(k, k)] *= 1.0 + damping);
+            let step = -damped
+                .cholesky()
+                .ok_or(PnpError::Singular)?
+                .solve(&gradient);
+            let trial = moved(&pose, &step);
+            let trial_cost = self.cost(&trial, chosen);
+            if trial_cost <= cost {
+                let gain = cost - trial_cost;
+                (pose, cost) = (trial, trial_cost);
+                damping = (damping * 0.2).max(1e-9);
+                if gain <= 1e-9 * cost || step.norm() < 1e-9 {
+                    break;
+                }
+            } else {
+                damping *= 10.0;
+            }
+        }
+        pose.rotation.renormalize();
+        Ok(pose)
+    }
+
+    /// Huber's loss; a point behind the camera costs as much as one that is 100 σ off.
+    fn cost(&self, pose: &Isometry3<f64>, chosen: &[usize]) -> f64 {
+        let loss = |&i: &usize| {
+            let r = self
+                .residual(pose, i)
+                .map_or(100.0, |(residual, _)| residual.norm());
+            if r <= self.huber {
+                0.5 * r * r
+            } else {
+                self.huber * (r - 0.5 * self.huber)
+            }
+        };
+        chosen.iter().map(loss).sum()
+    }
+
+    fn normal_equations(
+        &self,
+        pose: &Isometry3<f64>,
+        chosen: &[usize],
+    ) -> (Matrix6<f64>, Vector6<f64>, f64) {
+        let (mut normal, mut gradient, mut square) = (Matrix6::zeros(), Vector6::zeros(), 0.0);
+        for &index in chosen {
+            let Some((residual, jacobian)) = self.residual(pose, index) else {
+                continue;
+            };
+            let r = residual.norm();
+            let weight = if r <= self.huber { 1.0 } else { self.huber / r };
+            normal += jacobian.tr_mul(&jacobian) * weight;
+            gradient += jacobian.tr_mul(&residual) * weight;
+            square += r * r;
+        }
+        (normal, gradient, square)
+    }
+
+    fn inliers(&self, pose: &Isometry3<f64>, all: &[usize], limit: f64) -> Vec<usize> {
+        let near = |&i: &usize| {
+            self.residual(pose, i)
+                .is_some_and(|(r, _)| r.norm() <= limit)
+        };
+        all.iter().copied().filter(near).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+
+    fn camera() -> PinholeCamera {
+        PinholeCamera::new(500.0, 500.0, 320.0, 240.0).unwrap()
+    }
+
+    fn scene(truth: &Isometry3<f64>, outliers: usize) -> Vec<Observation> {
+        let rng = &mut rand_pcg::Pcg64::seed_from_u64(11);
+        let mut unit = || rng.random::<f64>() - 0.5;
+        (0..100)
+            .map(|k| {
+                let p = Point3::new(3.0 * unit(), 2.0 * unit(), 4.0 + 2.0 * unit());
+                let mut pixel = camera().project(&p).unwrap();
+                pixel += nalgebra::Vector2::new(unit(), unit());
+                if k < outliers {
+                    pixel = Point2::new(320.0 + 600.0 * unit(), 240.0 + 400.0 * unit());
+                }
+                Observation {
+                    point: truth.inverse() * p,
+                    pixel,
+                    sigma: 1.0,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_disturbed_pose_returns_despite_outliers() {
+        let truth = Isometry3::new(Vector3::new(0.3, -0.2, 0.5), Vector3::new(0.1, 0.7, -0.2));
+        let guess = moved(&truth, &Vector6::new(0.1, -0.1, 0.1, 0.05, -0.05, 0.05));
+        let found =
+            refine_pose(&scene(&truth, 30), &camera(), &guess, &PnpConfig::default()).unwrap();
+        let error = found.camera_from_world * truth.inverse();
+        assert!(error.translation.vector.norm() < 0.01 && error.rotation.angle() < 0.003);
+        assert!(found.inliers.len() >= 69 && found.rms < 1.0);
+        assert!(found.covariance.symmetric_eigenvalues().min() > 0.0);
+    }
+
+    #[test]
+    fn nonsense_is_an_error() {
+        let config = PnpConfig::default();
+        let identity = Isometry3::identity();
+        assert!(refine_pose(&[], &camera(), &identity, &config).is_err());
+        let same = Observation {
+            point: Point3::new(0.0, 0.0, 2.0),
+            pixel: Point2::new(320.0, 240.0),
+            sigma: 1.0,
+        };
+        assert!(refine_pose(&[same; 50], &camera(), &identity, &config).is_err());
+        let nan = Observation {
+            point: Point3::new(f64::NAN, 0.0, 2.0),
+            ..same
+        };
+        assert!(refine_pose(&[nan; 50], &camera(), &identity, &config).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn the_jacobian_is_the_derivative(
+            point in prop::array::uniform3(-1.0..1.0f64), axis in prop::array::uniform3(-0.3..0.3f64),
+        ) {
+            let observation = Observation { point: point.into(), pixel: Point2::new(1.0, 2.0), sigma: 1.3 };
+            let camera = camera();
+            let problem = Problem { observations: &[observation], camera: &camera, huber: 1.0 };
+            let pose = Isometry3::new(Vector3::new(0.1, 0.2, 4.0), axis.into());
+            let (_, jacobian) = problem.residual(&pose, 0).unwrap();
+            for k in 0..6 {
+                let mut step = Vector6::zeros();
+                step[k] = 1e-6;
+                let ahead = problem.residual(&moved(&pose, &step), 0).unwrap().0;
+                let behind = problem.residual(&moved(&pose, &-step), 0).unwrap().0;
+                prop_assert!(((ahead - behind) / 2e-6 - jacobian.column(k)).norm() < 1e-4);
+            }
+        }
+    }
+}
