@@ -5,6 +5,7 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+pub mod binary;
 pub mod camera;
 pub mod command;
 #[cfg(feature = "std")]

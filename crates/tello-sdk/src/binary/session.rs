@@ -1,0 +1,455 @@
+//! The client's side of the binary protocol without sockets or clocks.
+//!
+//! Handshake, continuous sticks (the drone needs them), acknowledgement of the log header, commands matched to their
+//! acknowledgements by message and sequence number. No command is sent again except `land`, which is repeated until the
+//! flight data say that the drone is on the ground. Drain [`BinarySession::poll_output`] after every call.
+
+use super::flight_data::FlightData;
+use super::frame::Frame;
+use super::log::LogRecords;
+use super::message::Message;
+use super::sticks::encode_sticks;
+use crate::session::Sticks;
+use crate::telemetry::Telemetry;
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
+use core::time::Duration;
+
+/// Settings of a [`BinarySession`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BinaryConfig {
+    /// Where the drone shall send video. Default 6038.
+    pub video_port: u16,
+    /// Period of the stick message. Default 20 ms, as gobot has it.
+    pub stick_period: Duration,
+    /// Without a new set-point for this long the sticks are centred. Default 500 ms.
+    pub stick_watchdog: Duration,
+    /// Wait for an acknowledgement. Default 1.5 s.
+    pub ack_timeout: Duration,
+    /// Repetition of the connection request, and of `land`. Default 1 s.
+    pub repeat: Duration,
+    /// When `land` is given up as unconfirmed. Default 60 s.
+    pub land_give_up: Duration,
+    /// Repetition of the request for video. Default 2 s.
+    pub video_repeat: Duration,
+    /// Silence after which the connection is made anew. Default 2 s.
+    pub link_timeout: Duration,
+}
+
+impl Default for BinaryConfig {
+    fn default() -> Self {
+        let ms = Duration::from_millis;
+        Self {
+            video_port: 6038,
+            stick_period: ms(20),
+            stick_watchdog: ms(500),
+            ack_timeout: ms(1500),
+            repeat: ms(1000),
+            land_give_up: ms(60_000),
+            video_repeat: ms(2000),
+            link_timeout: ms(2000),
+        }
+    }
+}
+
+/// A command with an acknowledgement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum BinaryCommand {
+    /// Take off.
+    TakeOff,
+    /// Land; repeated until confirmed.
+    Land,
+    /// Take off when thrown.
+    ThrowAndGo,
+    /// Land on a palm.
+    PalmLand,
+    /// Flip: 0 forward, 1 left, 2 back, 3 right, 4 to 7 diagonally.
+    Flip(u8),
+    /// Bit rate of the video: 0 automatic, 1 to 5.
+    EncoderRate(u8),
+}
+
+impl BinaryCommand {
+    fn frame(self) -> (Message, u8, Vec<u8>) {
+        match self {
+            Self::TakeOff => (Message::TakeOff, 0x68, Vec::new()),
+            Self::Land => (Message::Land, 0x68, [0].into()),
+            Self::ThrowAndGo => (Message::ThrowAndGo, 0x48, [0].into()),
+            Self::PalmLand => (Message::PalmLand, 0x68, [0].into()),
+            Self::Flip(direction) => (Message::Flip, 0x70, [direction.min(7)].into()),
+            Self::EncoderRate(rate) => (Message::EncoderRate, 0x68, [rate.min(5)].into()),
+        }
+    }
+}
+
+/// Names a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CommandId(u64);
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Ending {
+    /// The drone acknowledged it (it may still refuse to carry it out: look at the telemetry).
+    Acknowledged,
+    /// The flight data confirm it (land).
+    Confirmed,
+    /// No acknowledgement came; it was not sent again.
+    Unknown,
+}
+
+/// Something to know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum BinaryEvent {
+    /// The handshake is done.
+    Connected,
+    /// Nothing was heard for the link timeout; the handshake begins anew.
+    Disconnected,
+    /// A command ended.
+    Finished {
+        /// Which.
+        id: CommandId,
+        /// The command.
+        command: BinaryCommand,
+        /// How.
+        ending: Ending,
+    },
+    /// [`BinarySession::telemetry`] has new values.
+    Telemetry,
+    /// The sticks were centred by the watchdog.
+    SticksCentered,
+}
+
+/// What the caller has to do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BinaryOutput {
+    /// Send to the drone's command port.
+    Send(Vec<u8>),
+    /// Something to know.
+    Event(BinaryEvent),
+    /// Nothing until this time or the next datagram.
+    WaitUntil(Duration),
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Pending {
+    id: CommandId,
+    command: BinaryCommand,
+    sequence: u16,
+    deadline: Duration,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Landing {
+    id: CommandId,
+    since: Duration,
+    next: Duration,
+}
+
+/// One drone in the binary protocol.
+#[derive(Debug, Clone)]
+pub struct BinarySession {
+    config: BinaryConfig,
+    now: Duration,
+    connected: bool,
+    next_request: Duration,
+    next_sticks: Duration,
+    next_video: Option<Duration>,
+    heard: Duration,
+    sticks: Sticks,
+    sticks_set: Option<Duration>,
+    pending: Vec<Pending>,
+    landing: Option<Landing>,
+    sequence: u16,
+    next_id: u64,
+    telemetry: Telemetry,
+    rejected: u64,
+    outputs: VecDeque<BinaryOutput>,
+}
+
+/// Commands that wait for an acknowledgement at most; the oldest is given up beyond.
+const PENDING: usize = 64;
+
+impl BinarySession {
+    /// A session that asks for a connection at once.
+    #[must_use]
+    pub fn new(config: BinaryConfig) -> Self {
+        Self {
+            config,
+            now: Duration::ZERO,
+            connected: false,
+            next_request: Duration::ZERO,
+            next_sticks: Duration::ZERO,
+            next_video: None,
+            heard: Duration::ZERO,
+            sticks: Sticks::CENTER,
+            sticks_set: None,
+            pending: Vec::new(),
+            landing: None,
+            sequence: 0,
+            next_id: 0,
+            telemetry: Telemetry::default(),
+            rejected: 0,
+            outputs: VecDeque::new(),
+        }
+    }
+
+    /// Sends a command once (`land`: until confirmed); its end comes as an event.
+    pub fn command(&mut self, now: Duration, command: BinaryCommand) -> CommandId {
+        self.now = self.now.max(now);
+        self.next_id += 1;
+        let id = CommandId(self.next_id);
+        if command == BinaryCommand::Land {
+            if let Some(old) = self.landing.take() {
+                self.finish(old.id, command, Ending::Unknown);
+            }
+            self.sticks = Sticks::CENTER;
+            self.sticks_set = None;
+            self.landing = Some(Landing {
+                id,
+                since: self.now,
+                next: self.now,
+            });
+        } else {
+            self.start(id, command);
+        }
+        self.advance();
+        id
+    }
+
+    /// Sets the sticks; to be repeated within the watchdog's time.
+    pub fn set_sticks(&mut self, now: Duration, sticks: Sticks) {
+        self.now = self.now.max(now);
+        if self.landing.is_none() {
+            self.sticks = sticks;
+            self.sticks_set = Some(self.now);
+        }
+        self.advance();
+    }
+
+    /// Asks for video, or no longer.
+    pub fn set_video(&mut self, now: Duration, on: bool) {
+        self.now = self.now.max(now);
+        self.next_video = on.then_some(self.now);
+        self.advance();
+    }
+
+    /// Cuts the motors at once: the plain text `emergency`, three times; never answered.
+    pub fn emergency(&mut self) {
+        for _ in 0..3 {
+            self.outputs
+                .push_back(BinaryOutput::Send(b"emergency".to_vec()));
+        }
+    }
+
+    /// Takes in a datagram of the drone's command port.
+    pub fn handle_datagram(&mut self, at: Duration, bytes: &[u8]) {
+        self.now = self.now.max(at);
+        if bytes.starts_with(b"conn_ack:") {
+            self.heard = self.now;
+            if !self.connected {
+                self.connected = true;
+                self.next_sticks = self.now;
+                self.outputs
+                    .push_back(BinaryOutput::Event(BinaryEvent::Connected));
+            }
+        } else if let Ok(frame) = Frame::parse(bytes) {
+            self.heard = self.now;
+            self.on_frame(&frame);
+        } else {
+            self.rejected += 1;
+        }
+        self.advance();
+    }
+
+    /// Lets time pass.
+    pub fn handle_timeout(&mut self, now: Duration) {
+        self.now = self.now.max(now);
+        self.advance();
+    }
+
+    /// What to do next; call until it returns [`BinaryOutput::WaitUntil`].
+    pub fn poll_output(&mut self) -> BinaryOutput {
+        self.outputs
+            .pop_front()
+            .unwrap_or_else(|| BinaryOutput::WaitUntil(self.deadline()))
+    }
+
+    /// The newest value of each kind.
+    #[must_use]
+    pub fn telemetry(&self) -> &Telemetry {
+        &self.telemetry
+    }
+
+    /// Datagrams that were no frame: another protocol, or a wrong checksum.
+    #[must_use]
+    pub fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    fn on_frame(&mut self, frame: &Frame<'_>) {
+        let is = |message: Message| frame.message == message as u16;
+        if is(Message::FlightData) {
+            if let Some(data) = FlightData::parse(frame.payload) {
+                self.take(&data.telemetry(self.now));
+            }
+        } else if is(Message::LogHeader) {
+            // Without this acknowledgement no log data come.
+            let id = frame.payload.get(..2).unwrap_or(&[0, 0]);
+            let payload = [&[0][..], id].concat();
+            self.send(Message::LogHeader, 0x50, &payload);
+        } else if is(Message::LogData) {
+            for record in LogRecords::new(frame.payload) {
+                self.take(&record.telemetry(self.now));
+            }
+        } else if let Some(index) = self.pending.iter().position(|p| {
+            p.sequence == frame.sequence && p.command.frame().0 as u16 == frame.message
+        }) {
+            let done = self.pending.swap_remove(index);
+            self.finish(done.id, done.command, Ending::Acknowledged);
+        }
+    }
+
+    fn take(&mut self, sample: &Telemetry) {
+        self.telemetry.merge(sample);
+        self.outputs
+            .push_back(BinaryOutput::Event(BinaryEvent::Telemetry));
+    }
+
+    fn start(&mut self, id: CommandId, command: BinaryCommand) {
+        if self.pending.len() >= PENDING {
+            let oldest = self.pending.swap_remove(0);
+            self.finish(oldest.id, oldest.command, Ending::Unknown);
+        }
+        let (message, kind, payload) = command.frame();
+        let sequence = self.send(message, kind, &payload);
+        let deadline = self.now + self.config.ack_timeout;
+        self.pending.push(Pending {
+            id,
+            command,
+            sequence,
+            deadline,
+        });
+    }
+
+    fn send(&mut self, message: Message, kind: u8, payload: &[u8]) -> u16 {
+        self.sequence = self.sequence.wrapping_add(1);
+        let sequence = self.sequence;
+        let frame = Frame {
+            kind,
+            message: message as u16,
+            sequence,
+            payload,
+        };
+        self.outputs.push_back(BinaryOutput::Send(frame.encode()));
+        sequence
+    }
+
+    fn finish(&mut self, id: CommandId, command: BinaryCommand, ending: Ending) {
+        let event = BinaryEvent::Finished {
+            id,
+            command,
+            ending,
+        };
+        self.outputs.push_back(BinaryOutput::Event(event));
+    }
+
+    fn advance(&mut self) {
+        self.step_link();
+        self.step_pending();
+        self.step_landing();
+        self.step_sticks();
+        if self.connected && self.next_video.is_some_and(|next| next <= self.now) {
+            self.send(Message::VideoStart, 0x60, &[]);
+            self.next_video = Some(self.now + self.config.video_repeat);
+        }
+    }
+
+    fn step_link(&mut self) {
+        if self.connected && self.heard + self.config.link_timeout <= self.now {
+            self.connected = false;
+            self.next_request = self.now;
+            self.outputs
+                .push_back(BinaryOutput::Event(BinaryEvent::Disconnected));
+        }
+        if !self.connected && self.next_request <= self.now {
+            let port = self.config.video_port.to_le_bytes();
+            self.outputs
+                .push_back(BinaryOutput::Send([&b"conn_req:"[..], &port].concat()));
+            self.next_request = self.now + self.config.repeat;
+        }
+    }
+
+    fn step_pending(&mut self) {
+        while let Some(index) = self.pending.iter().position(|p| p.deadline <= self.now) {
+            let lost = self.pending.swap_remove(index);
+            self.finish(lost.id, lost.command, Ending::Unknown);
+        }
+    }
+
+    fn step_landing(&mut self) {
+        let Some(mut landing) = self.landing else {
+            return;
+        };
+        let landed = self
+            .telemetry
+            .flying
+            .is_some_and(|f| !f.value && f.at > landing.since);
+        if landed || self.now.saturating_sub(landing.since) >= self.config.land_give_up {
+            self.landing = None;
+            let ending = if landed {
+                Ending::Confirmed
+            } else {
+                Ending::Unknown
+            };
+            return self.finish(landing.id, BinaryCommand::Land, ending);
+        }
+        if landing.next <= self.now {
+            let (message, kind, payload) = BinaryCommand::Land.frame();
+            self.send(message, kind, &payload);
+            landing.next = self.now + self.config.repeat;
+            self.landing = Some(landing);
+        }
+    }
+
+    fn step_sticks(&mut self) {
+        if self
+            .sticks_set
+            .is_some_and(|at| at + self.config.stick_watchdog <= self.now)
+        {
+            self.sticks = Sticks::CENTER;
+            self.sticks_set = None;
+            self.outputs
+                .push_back(BinaryOutput::Event(BinaryEvent::SticksCentered));
+        }
+        if self.connected && self.next_sticks <= self.now {
+            let time = (self.now.as_millis() % 86_400_000) as u32;
+            let payload = encode_sticks(self.sticks, false, time);
+            let frame = Frame {
+                kind: 0x60,
+                message: Message::Sticks as u16,
+                sequence: 0,
+                payload: &payload,
+            };
+            self.outputs.push_back(BinaryOutput::Send(frame.encode()));
+            self.next_sticks = self.now + self.config.stick_period;
+        }
+    }
+
+    fn deadline(&self) -> Duration {
+        let link = if self.connected {
+            self.next_sticks.min(self.heard + self.config.link_timeout)
+        } else {
+            self.next_request
+        };
+        let watchdog = self.sticks_set.map(|at| at + self.config.stick_watchdog);
+        let pending = self.pending.iter().map(|p| p.deadline).min();
+        let landing = self
+            .landing
+            .map(|l| l.next.min(l.since + self.config.land_give_up));
+        let video = self.next_video.filter(|_| self.connected);
+        let all = [Some(link), watchdog, pending, landing, video];
+        all.into_iter().flatten().min().unwrap_or(Duration::MAX)
+    }
+}
