@@ -24,7 +24,7 @@ pub struct ObstacleUpdate {
 impl ObstacleSet {
     /// Replaces the obstacles by those of a map that has grown or moved: all its points, old and new.
     ///
-    /// K-means starts from the former centroids, so little is left to do where little changed; the
+    /// K-means starts from the former centroids and makes no swaps, so little is left to do where little changed; the
     /// result is an [`ObstacleSet`] like any other, though not the same as one built at once. On an error
     /// the set stays as it was. `rays` may be empty.
     ///
@@ -52,6 +52,10 @@ impl ObstacleSet {
         }
         let mut kmeans_config = config.kmeans.clone();
         kmeans_config.clusters = kmeans_config.clusters.min(points.len());
+        if !self.centroids.is_empty() {
+            // A warm start is to stay near where it was.
+            kmeans_config.swap_rounds = 0;
+        }
         let clustering = kmeans_from(&points, &self.centroids, &kmeans_config, rng)?;
         let former = Former::of(self);
         let hulls = split::hulls(&points, clustering.members(), rays, config, |members| {

@@ -19,14 +19,14 @@ struct Tally {
 }
 
 impl Tally {
-    fn print(&self, name: &str) {
+    fn row(&self, name: &str) -> String {
         let Tally {
             possible,
             solved,
             crossing,
             touching,
         } = self;
-        println!("| {name} | {possible} | {solved} | {crossing} | {touching} |");
+        format!("| {name} | {possible} | {solved} | {crossing} | {touching} |")
     }
 }
 
@@ -72,11 +72,11 @@ fn paths_in_proven_free_space_never_cross_true_geometry() {
     println!("| space | queries with free ends | solved | cross true geometry | ball touches it |");
     println!("| --- | --- | --- | --- | --- |");
     let truth = fly(&scene, |_| Some(|a, b| scene.clearance(a, b) >= RADIUS));
-    truth.print("true boxes");
+    println!("{}", truth.row("true boxes"));
     let among_hulls = fly(&scene, |_| {
         Some(|a, b| Space::Hulls(&hulls).motion_is_free(a, b, RADIUS))
     });
-    among_hulls.print("hulls");
+    println!("{}", among_hulls.row("hulls"));
     let proven = fly(&scene, |(start, goal)| {
         let mut free = free.clone();
         free.add_ball(start, RADIUS).ok()?;
@@ -85,7 +85,7 @@ fn paths_in_proven_free_space_never_cross_true_geometry() {
             move |a, b| Space::ProvenFree { hulls, free: &free }.motion_is_free(a, b, radius);
         (is_free(start, start) && is_free(goal, goal)).then_some(is_free)
     });
-    proven.print("proven free");
+    println!("{}", proven.row("proven free"));
 
     assert_eq!(truth.crossing, 0);
     assert!(

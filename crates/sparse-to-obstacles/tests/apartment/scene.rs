@@ -26,10 +26,10 @@ impl Scene {
         let read = |extension: &str| std::fs::read(stem.with_extension(extension)).ok();
         let points = npy(&read("npy")?);
         let labels = npy(&read("labels.npy")?);
-        let number = |bytes: &[u8]| f64::from(f32::from_le_bytes(bytes.try_into().unwrap()));
+        let number = |c: &[u8]| f64::from(f32::from_le_bytes([c[0], c[1], c[2], c[3]]));
         let points = points
             .chunks_exact(12)
-            .map(|c| [0, 4, 8].map(|at| number(&c[at..at + 4])));
+            .map(|c| [0, 4, 8].map(|at| number(&c[at..])));
         let inliers = points
             .zip(labels)
             .filter(|&(_, label)| label == 0)
@@ -129,7 +129,7 @@ fn npy(file: &[u8]) -> Vec<u8> {
 }
 
 fn vec3(value: &serde_json::Value, from: usize) -> Vec3 {
-    [0, 1, 2].map(|axis| value[from + axis].as_f64().unwrap())
+    [0, 1, 2].map(|axis| value[from + axis].as_f64().unwrap_or(f64::NAN))
 }
 
 fn corners(value: &serde_json::Value) -> (Vec3, Vec3) {
