@@ -52,6 +52,8 @@ type Verdict = (Run, Result<Exit, Rejection>);
 struct Scene<'a> {
     profile: &'a RangeProfile,
     rule: &'a RangeAware,
+    /// Half the smoothing window, bins.
+    half: usize,
     contour: Contour,
     unseen: Vec<bool>,
     /// Width below which an opening is turned down, map units.
@@ -66,12 +68,8 @@ impl<'a> Scene<'a> {
         config: &ExitConfig,
     ) -> Self {
         let bins = |angle: f64| (angle / profile.bin_width()).round() as usize;
-        let contour = Contour::new(
-            profile,
-            bins(rule.window),
-            bins(rule.side),
-            config.min_count,
-        );
+        let half = bins(rule.window);
+        let contour = Contour::new(profile, half, bins(rule.side), config.min_count);
         let unseen = unseen_bins(profile, &contour.ranges, rule, view);
         let needed = config
             .min_width
@@ -79,6 +77,7 @@ impl<'a> Scene<'a> {
         Self {
             profile,
             rule,
+            half,
             contour,
             unseen,
             needed,
@@ -109,10 +108,25 @@ impl<'a> Scene<'a> {
         let empty: Vec<bool> = (0..self.n())
             .map(|bin| self.contour.ranges[bin].is_none() && !self.unseen[bin])
             .collect();
-        circular_runs(&empty)
+        let runs = circular_runs(&empty)
             .into_iter()
-            .map(|run| (run, self.judge_gap(run)))
-            .collect()
+            .map(|run| self.widened(run));
+        runs.map(|run| (run, self.judge_gap(run))).collect()
+    }
+
+    /// Takes back what the smoothing window took from an empty run on either side.
+    fn widened(&self, run: Run) -> Run {
+        let n = self.n();
+        let most = self.half.min((n - run.len) / 2);
+        let empty = |bin: usize| self.profile.bins[bin % n].count == 0;
+        let before = (1..=most).take_while(|k| empty(run.start + n - k)).count();
+        let after = (0..most)
+            .take_while(|k| empty(run.start + run.len + k))
+            .count();
+        Run {
+            start: (run.start + n - before) % n,
+            len: run.len + before + after,
+        }
     }
 
     fn judge_gap(&self, run: Run) -> Result<Exit, Rejection> {

@@ -1,4 +1,9 @@
 //! Seeded rooms with doors, seen by a turning camera: plans, features, outliers and the truth.
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "shared by tests and examples, each uses its part"
+)]
 
 mod camera;
 mod corruption;

@@ -1,4 +1,9 @@
 //! The real room scans and the openings labelled in them.
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "shared by tests and examples, each uses its part"
+)]
 
 use std::path::PathBuf;
 

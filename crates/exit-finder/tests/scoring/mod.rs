@@ -1,4 +1,9 @@
 //! Precision and recall of the exits of generated rooms.
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "shared by tests and examples, each uses its part"
+)]
 
 use std::f64::consts::TAU;
 use std::fmt;

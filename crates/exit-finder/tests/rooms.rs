@@ -1,0 +1,252 @@
+//! Analytic rooms with 0 to 4 doors of known width, seen through or not.
+
+mod walls;
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use exit_finder::{
+    AffinePlane, ExitConfig, ExitKind, ExitReport, ExitView, Gaze, HeightBand, Rejection,
+    find_exits,
+};
+use walls::{Walls, room};
+
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+fn search(points: &[[f64; 3]], eye: [f64; 2], config: &ExitConfig) -> ExitReport {
+    let agent = [eye[0], eye[1], 1.0];
+    let plane = AffinePlane::from_up(UP, agent).unwrap();
+    find_exits(points, agent, &plane, &ExitView::default(), config).unwrap()
+}
+
+/// A 4 m × 4 m room around the origin with doors of 0.9 m in the middle of the first `doors` sides.
+fn square(doors: usize) -> Walls {
+    room(
+        [-2.0; 2],
+        [2.0; 2],
+        std::array::from_fn(|i| (i < doors).then_some([1.55, 2.45])),
+    )
+}
+
+/// The same inside a larger hall whose walls are seen through the doors.
+fn square_in_hall(doors: usize) -> Walls {
+    let hall = room([-6.0; 2], [6.0; 2], [None; 4]);
+    Walls([square(doors).0, hall.0].concat())
+}
+
+fn assert_doors(report: &ExitReport, doors: usize, kind: ExitKind) {
+    assert_eq!(
+        report.exits.len(),
+        doors,
+        "{:?} {:?}",
+        report.exits,
+        report.rejected
+    );
+    let mut bearings: Vec<f64> = report.exits.iter().map(|exit| exit.bearing_rad).collect();
+    bearings.sort_by(f64::total_cmp);
+    let mut expected: Vec<f64> = (0..doors)
+        .map(|i| ((i as f64 - 1.0) * FRAC_PI_2).rem_euclid(TAU))
+        .collect();
+    expected.sort_by(f64::total_cmp);
+    for (bearing, expected) in bearings.iter().zip(&expected) {
+        let off = (bearing - expected + 0.5).rem_euclid(TAU) - 0.5;
+        assert!(off.abs() < 3f64.to_radians(), "{bearings:?}");
+    }
+    for exit in &report.exits {
+        assert_eq!(exit.kind, kind);
+        assert!((exit.width - 0.9).abs() < 0.25, "width {}", exit.width);
+        assert!((exit.range - 2.4).abs() < 0.3, "range {}", exit.range);
+    }
+}
+
+#[test]
+fn dark_doors_are_found_as_gaps() {
+    for doors in 0..=4 {
+        let report = search(
+            &square(doors).seen_from([0.0; 2], 1080, 20.0),
+            [0.0; 2],
+            &ExitConfig::default(),
+        );
+        assert_doors(&report, doors, ExitKind::Empty);
+        assert!(report.unseen.is_empty());
+    }
+}
+
+#[test]
+fn doors_seen_through_are_found_as_range_jumps() {
+    for doors in 0..=4 {
+        let points = square_in_hall(doors).seen_from([0.0; 2], 1080, 20.0);
+        assert_doors(
+            &search(&points, [0.0; 2], &ExitConfig::default()),
+            doors,
+            ExitKind::RangeJump,
+        );
+    }
+}
+
+#[test]
+fn the_paper_finds_gaps_only() {
+    for config in [ExitConfig::paper(), ExitConfig::paper_repaired()] {
+        let dark = square(2).seen_from([0.3, 0.1], 1080, 20.0);
+        let best = search(&dark, [0.3, 0.1], &config).exits[0].clone();
+        assert!((best.bearing_rad).rem_euclid(TAU) > 0.1 || best.bearing_rad < 6.2);
+    }
+    let seen_through = square_in_hall(2).seen_from([0.0; 2], 1080, 20.0);
+    assert!(
+        search(&seen_through, [0.0; 2], &ExitConfig::paper_repaired())
+            .exits
+            .is_empty()
+    );
+    // As printed, the bin [360°, 361°) is always empty: an enclosed room has an exit there.
+    let literal = search(&seen_through, [0.0; 2], &ExitConfig::paper());
+    assert_eq!(literal.exits.len(), 1);
+    assert!((literal.exits[0].width_rad - 1f64.to_radians()).abs() < 1e-9);
+}
+
+#[test]
+fn rooms_without_doors_are_enclosed() {
+    for (low, high, eye) in [
+        ([-2.0, -2.0], [2.0, 2.0], [0.0, 0.0]),
+        ([-2.0, -2.0], [2.0, 2.0], [1.2, -1.3]),
+        ([-1.0, -1.0], [7.0, 1.0], [0.0, 0.2]),
+        ([-1.0, -0.9], [9.0, 0.9], [0.0, 0.0]),
+        ([-5.0, -0.9], [5.0, 0.9], [0.0, 0.1]),
+    ] {
+        let points = room(low, high, [None; 4]).seen_from(eye, 1080, 20.0);
+        let report = search(&points, eye, &ExitConfig::default());
+        assert!(
+            report.exits.is_empty(),
+            "{low:?} {high:?} {:?}",
+            report.exits
+        );
+    }
+}
+
+#[test]
+fn an_l_shaped_room_opens_round_its_corner() {
+    let corners = [
+        [-2.0, -2.0],
+        [5.0, -2.0],
+        [5.0, 0.0],
+        [1.0, 0.0],
+        [1.0, 4.0],
+        [-2.0, 4.0],
+    ];
+    let walls = (0..6).fold(Walls::default(), |w, i| {
+        w.wall(corners[i], corners[(i + 1) % 6])
+    });
+    let eye = [-1.0, 3.0];
+    let report = search(
+        &walls.seen_from(eye, 1080, 20.0),
+        eye,
+        &ExitConfig::default(),
+    );
+    assert!(report.exits.len() <= 1, "{:?}", report.exits);
+}
+
+#[test]
+fn too_narrow_a_gap_is_turned_down_and_said_so() {
+    let points = square_in_hall(1).seen_from([0.0; 2], 1080, 20.0);
+    let config = ExitConfig {
+        min_width: Some(1.5),
+        ..Default::default()
+    };
+    let report = search(&points, [0.0; 2], &config);
+    assert!(report.exits.is_empty());
+    assert!(
+        report
+            .rejected
+            .iter()
+            .any(|r| matches!(r.reason, Rejection::TooNarrow { .. }))
+    );
+}
+
+#[test]
+fn a_gap_across_zero_is_one() {
+    let walls = room([-2.0; 2], [2.0; 2], [None, Some([1.55, 2.45]), None, None]);
+    let points = walls.seen_from([0.0; 2], 1080, 20.0);
+    let repaired = search(&points, [0.0; 2], &ExitConfig::paper_repaired());
+    assert_eq!(repaired.exits.len(), 1);
+    let linear = search(&points, [0.0; 2], &ExitConfig::paper());
+    assert_eq!(
+        linear.exits.len(),
+        2,
+        "the text's segment of [0, 2π] is cut in two"
+    );
+}
+
+#[test]
+fn gazes_tell_unseen_from_empty() {
+    let points = square(1).seen_from([0.0; 2], 1080, 20.0);
+    let agent = [0.0, 0.0, 1.0];
+    let plane = AffinePlane::from_up(UP, agent).unwrap();
+    let gaze = |bearing: f64| Gaze {
+        position: agent,
+        forward: [bearing.cos(), bearing.sin(), 0.0],
+        half_fov_rad: 0.6,
+    };
+    // The door is at −90 degrees. Somebody looked everywhere else.
+    let elsewhere: Vec<Gaze> = (0..8).map(|i| gaze(-0.2 + 0.45 * f64::from(i))).collect();
+    let view = ExitView {
+        gazes: &elsewhere,
+        ..Default::default()
+    };
+    let config = ExitConfig::default();
+    let report = find_exits(&points, agent, &plane, &view, &config).unwrap();
+    assert!(report.exits.is_empty());
+    assert_eq!(report.unseen.len(), 1);
+    let everywhere: Vec<Gaze> = (0..12).map(|i| gaze(0.55 * f64::from(i))).collect();
+    let view = ExitView {
+        gazes: &everywhere,
+        ..Default::default()
+    };
+    let report = find_exits(&points, agent, &plane, &view, &config).unwrap();
+    assert_eq!((report.exits.len(), report.unseen.len()), (1, 0));
+}
+
+#[test]
+fn ties_go_to_the_smallest_turn() {
+    let points = square_in_hall(4).seen_from([0.0; 2], 1440, 20.0);
+    let agent = [0.0, 0.0, 1.0];
+    let plane = AffinePlane::from_up(UP, agent).unwrap();
+    for heading in [
+        [1.0, 0.1, 0.0],
+        [0.1, 1.0, 0.0],
+        [-1.0, 0.1, 0.3],
+        [0.0, -1.0, 0.0],
+    ] {
+        let view = ExitView {
+            heading: Some(heading),
+            ..Default::default()
+        };
+        let report = find_exits(&points, agent, &plane, &view, &ExitConfig::default()).unwrap();
+        let best = report.best().unwrap();
+        let along: f64 = (0..3).map(|i| best.direction[i] * heading[i]).sum();
+        assert!(along > 0.9, "{heading:?} {:?}", best.direction);
+    }
+}
+
+#[test]
+fn a_coarse_profile_still_finds_a_wide_door() {
+    let walls = room([-2.0; 2], [2.0; 2], [Some([1.0, 3.0]), None, None, None]);
+    let points = walls.seen_from([0.0; 2], 1080, 20.0);
+    for bins in [8, 12, 36, 90, 720, 1000] {
+        let config = ExitConfig {
+            bins,
+            ..ExitConfig::paper_repaired()
+        };
+        let report = search(&points, [0.0; 2], &config);
+        // A door of 53 degrees need not leave one of eight bins empty.
+        assert_eq!(report.exits.len(), usize::from(bins > 16), "{bins} bins");
+        let default = ExitConfig {
+            bins,
+            band: HeightBand::Off,
+            ..Default::default()
+        };
+        let exits = search(&points, [0.0; 2], &default).exits;
+        assert!(
+            exits
+                .iter()
+                .all(|exit| (exit.bearing_rad - 1.5 * std::f64::consts::PI).abs() < 0.5)
+        );
+    }
+}
