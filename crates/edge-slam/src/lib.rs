@@ -9,12 +9,15 @@ pub mod depth;
 pub mod edge;
 pub mod evaluation;
 pub mod feature;
+mod frame;
 pub mod fusion;
 pub mod image;
+pub mod odometry;
 pub mod pnp;
 #[cfg(feature = "image-files")]
 pub mod sequence;
 mod simd;
 pub mod two_view;
 
+pub use frame::Frame;
 pub use nalgebra;

@@ -1,0 +1,99 @@
+//! What the odometry can be told, and what it refuses.
+
+use crate::feature::{MatchConfig, OrbConfig, OrbConfigError};
+use crate::pnp::PnpConfig;
+use crate::two_view::TwoViewConfig;
+
+/// Parameters of [`super::Odometry`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OdometryConfig {
+    /// Features of each frame.
+    pub orb: OrbConfig,
+    /// Matching of a frame with its keyframe.
+    pub matching: MatchConfig,
+    /// Monocular start and recovery.
+    pub two_view: TwoViewConfig,
+    /// Pose of a frame.
+    pub pnp: PnpConfig,
+    /// Share of the keyframe's first count of inliers under which a new keyframe is made, 0..=1. Default 0.6.
+    pub keyframe_share: f64,
+    /// Inliers under which a new keyframe is made. Default 60.
+    pub keyframe_inliers: usize,
+    /// Points farther than this are left out, metres or units, > 0. Default 10.
+    pub farthest: f64,
+    /// Least angle of triangulation, radians, > 0. Default 1 degree.
+    pub least_angle: f64,
+    /// Lost frames after which a new map is begun, >= 1. Default 5.
+    pub patience: usize,
+}
+
+impl Default for OdometryConfig {
+    fn default() -> Self {
+        Self {
+            orb: OrbConfig::default(),
+            matching: MatchConfig::default(),
+            two_view: TwoViewConfig::default(),
+            pnp: PnpConfig {
+                min_inliers: 15,
+                ..PnpConfig::default()
+            },
+            keyframe_share: 0.6,
+            keyframe_inliers: 60,
+            farthest: 10.0,
+            least_angle: 1_f64.to_radians(),
+            patience: 5,
+        }
+    }
+}
+
+/// Why no odometry can be made.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OdometryError {
+    /// A field of the feature extractor.
+    #[error(transparent)]
+    Orb(#[from] OrbConfigError),
+    /// Another field.
+    #[error("{name} is {value}, but must be {range}")]
+    Parameter {
+        /// Field.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+}
+
+impl OdometryConfig {
+    /// Errs at the first field outside its range.
+    ///
+    /// # Errors
+    /// [`OdometryError`].
+    pub fn validate(&self) -> Result<(), OdometryError> {
+        self.orb.validate()?;
+        #[expect(clippy::cast_precision_loss, reason = "only shown in a message")]
+        let patience = self.patience as f64;
+        let share = self.keyframe_share;
+        let fields = [
+            (
+                "keyframe_share",
+                share,
+                (0.0..=1.0).contains(&share),
+                "in 0..=1",
+            ),
+            ("farthest", self.farthest, self.farthest > 0.0, "positive"),
+            (
+                "least_angle",
+                self.least_angle,
+                self.least_angle > 0.0,
+                "positive",
+            ),
+            ("patience", patience, self.patience > 0, "at least 1"),
+        ];
+        match fields.into_iter().find(|field| !field.2) {
+            Some((name, value, _, range)) => Err(OdometryError::Parameter { name, value, range }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Frame-to-keyframe odometry: the pose of each frame against the points of the newest keyframe.
+//!
+//! No optimisation over several frames yet, so errors of keyframes add up. With depth the unit is the metre;
+//! without it, the median depth at the start.
+
+mod config;
+mod keyframe;
+mod map_builder;
+mod sight;
+mod tracker;
+
+pub use config::{OdometryConfig, OdometryError};
+pub use tracker::{Odometry, Tracked};

@@ -1,0 +1,390 @@
+//! The odometry itself.
+//!
+//! 1. Features; matches with the keyframe.
+//! 2. Keyframe with points: pose by PnP from the last one; if that fails, again from the two-view rotation.
+//!    Keyframe without points (monocular start): two-view pose once it is trusted; its median depth is the unit.
+//! 3. Few inliers left: this frame becomes the keyframe; it inherits points, and gets new ones by depth or
+//!    triangulation.
+//! 4. Lost for too long: a new epoch begins at the last known pose.
+
+use std::collections::VecDeque;
+
+use core::time::Duration;
+
+use nalgebra::{Isometry3, Point3};
+use rand::Rng;
+use slam_bridge::{Map, SlamSource, SlamUpdate, TrackingState};
+
+use super::keyframe::Keyframe;
+use super::map_builder::MapBuilder;
+use super::sight::Sight;
+use super::{OdometryConfig, OdometryError};
+use crate::Frame;
+use crate::camera::Camera;
+use crate::depth::DepthImage;
+use crate::feature::{Match, OrbExtractor, match_descriptors};
+use crate::pnp::{PnpPose, refine_pose};
+use crate::two_view::estimate_two_view;
+
+/// What became of a frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tracked {
+    /// Whether the pose can be trusted.
+    pub state: TrackingState,
+    /// Camera-to-world, world = first camera of the epoch; `Some` exactly when tracking.
+    pub world_from_camera: Option<Isometry3<f64>>,
+    /// Points that support it.
+    pub inliers: usize,
+    /// Whether this frame became a keyframe.
+    pub is_keyframe: bool,
+}
+
+/// Frame-to-keyframe odometry.
+#[derive(Debug, Clone)]
+pub struct Odometry {
+    config: OdometryConfig,
+    camera: Camera,
+    extractor: OrbExtractor,
+    keyframe: Option<Keyframe>,
+    frame_from_keyframe: Isometry3<f64>,
+    lost: usize,
+    is_metric: bool,
+    builder: MapBuilder,
+    updates: VecDeque<SlamUpdate>,
+}
+
+impl Odometry {
+    /// Odometry for one camera.
+    ///
+    /// # Errors
+    /// [`OdometryError`] when a field is outside its range.
+    pub fn new(camera: Camera, config: OdometryConfig) -> Result<Self, OdometryError> {
+        config.validate()?;
+        Ok(Self {
+            config,
+            camera,
+            extractor: OrbExtractor::new(config.orb)?,
+            keyframe: None,
+            frame_from_keyframe: Isometry3::identity(),
+            lost: 0,
+            is_metric: false,
+            builder: MapBuilder::default(),
+            updates: VecDeque::new(),
+        })
+    }
+
+    /// Tracks one frame. `depth`, when given, is metric and registered (see [`crate::depth::DepthSource`]); give it
+    /// from the first frame on or never. Any image is accepted; one without features is a lost frame.
+    pub fn track(
+        &mut self,
+        frame: &Frame<'_>,
+        depth: Option<&DepthImage>,
+        rng: &mut impl Rng,
+    ) -> Tracked {
+        let farthest = self.config.farthest;
+        let sight = Sight::new(frame, depth, &self.camera, &self.extractor, farthest);
+        let tracked = match self.keyframe.take() {
+            None => self.begin(sight, Isometry3::identity(), frame.time),
+            Some(mut keyframe) => {
+                let matches = match_descriptors(
+                    &keyframe.sight.features.descriptors,
+                    &sight.features.descriptors,
+                    &self.config.matching,
+                );
+                if keyframe.known_points() == 0 {
+                    self.initialise(&mut keyframe, &sight, &matches, rng);
+                }
+                self.follow(keyframe, sight, &matches, frame.time, rng)
+            }
+        };
+        self.updates.push_back(SlamUpdate {
+            time: Duration::try_from_secs_f64(frame.time).unwrap_or_default(),
+            state: tracked.state,
+            world_from_camera: tracked.world_from_camera,
+            epoch: self.builder.map().epoch,
+            tracked_points: tracked.inliers,
+        });
+        tracked
+    }
+
+    /// The map so far.
+    #[must_use]
+    pub fn current_map(&self) -> &Map {
+        self.builder.map()
+    }
+
+    /// Whether coordinates are metres.
+    #[must_use]
+    pub fn is_metric(&self) -> bool {
+        self.is_metric
+    }
+
+    /// Makes the first keyframe of an epoch.
+    fn begin(&mut self, sight: Sight, pose: Isometry3<f64>, time: f64) -> Tracked {
+        let mut keyframe = Keyframe::new(sight, pose);
+        let points = keyframe.known_points();
+        self.is_metric = points > 0;
+        self.frame_from_keyframe = Isometry3::identity();
+        self.lost = 0;
+        self.builder.add(&mut keyframe, time, self.is_metric);
+        self.keyframe = Some(keyframe);
+        let known = points >= self.config.pnp.min_inliers;
+        Tracked {
+            state: if known {
+                TrackingState::Tracking
+            } else {
+                TrackingState::NotInitialized
+            },
+            world_from_camera: known.then_some(pose),
+            inliers: points,
+            is_keyframe: true,
+        }
+    }
+
+    /// Gives a keyframe without depth its points, once the frame is far enough away.
+    fn initialise(
+        &mut self,
+        keyframe: &mut Keyframe,
+        sight: &Sight,
+        matches: &[Match],
+        rng: &mut impl Rng,
+    ) {
+        let (first, second, index) = keyframe.pixel_pairs(sight, matches);
+        let camera = &self.camera.pinhole;
+        let found = estimate_two_view(&first, &second, camera, &self.config.two_view, rng);
+        let Some(found) = found.ok().filter(|found| found.is_confident()) else {
+            return;
+        };
+        let good = |&(_, point): &(usize, Point3<f64>)| point.z > 0.0;
+        let points: Vec<(usize, Point3<f64>)> = found
+            .inliers
+            .iter()
+            .zip(&found.points)
+            .filter_map(|(&i, point)| {
+                let point = point.filter(|point| point.angle >= self.config.least_angle)?;
+                Some((matches[index[i]].first, point.point))
+            })
+            .filter(good)
+            .collect();
+        let mut depths: Vec<f64> = points.iter().map(|(_, point)| point.z).collect();
+        depths.sort_by(f64::total_cmp);
+        let Some(&unit) = depths.get(depths.len() / 2) else {
+            return;
+        };
+        for (slot, point) in points {
+            keyframe.sight.points[slot] = Some(point / unit);
+        }
+        self.frame_from_keyframe = found.second_from_first;
+        self.frame_from_keyframe.translation.vector /= unit;
+        self.builder.complete(keyframe);
+    }
+
+    fn follow(
+        &mut self,
+        mut keyframe: Keyframe,
+        sight: Sight,
+        matches: &[Match],
+        time: f64,
+        rng: &mut impl Rng,
+    ) -> Tracked {
+        let started = keyframe.known_points() > 0;
+        let factor = self.config.orb.scale_factor;
+        let (observations, index) = keyframe.observations(&sight, matches, factor);
+        let camera = &self.camera.pinhole;
+        let pnp = |guess: &Isometry3<f64>| {
+            refine_pose(&observations, camera, guess, &self.config.pnp)
+                .ok()
+                .filter(is_plausible)
+        };
+        let enough = |pose: &PnpPose| 2 * pose.inliers.len() >= observations.len();
+        let found = pnp(&self.frame_from_keyframe).filter(enough).or_else(|| {
+            let (first, second, _) = keyframe.pixel_pairs(&sight, matches);
+            let motion =
+                estimate_two_view(&first, &second, camera, &self.config.two_view, rng).ok()?;
+            let mut guess = self.frame_from_keyframe;
+            guess.rotation = motion.second_from_first.rotation;
+            pnp(&guess)
+        });
+        let Some(found) = found else {
+            return self.miss(keyframe, sight, started, time);
+        };
+        self.lost = 0;
+        self.frame_from_keyframe = found.camera_from_world;
+        let pose = keyframe.world_from_camera * found.camera_from_world.inverse();
+        let inliers = found.inliers.len();
+        keyframe.most_inliers = keyframe.most_inliers.max(inliers);
+        let is_keyframe = self.wants_keyframe(&keyframe, inliers);
+        if is_keyframe {
+            let agreeing: Vec<usize> = found.inliers.iter().map(|&i| index[i]).collect();
+            let mut next = Keyframe::new(sight, pose);
+            keyframe.hand_over(
+                &mut next,
+                matches,
+                &agreeing,
+                camera,
+                self.config.least_angle,
+            );
+            self.frame_from_keyframe = Isometry3::identity();
+            self.builder.add(&mut next, time, self.is_metric);
+            keyframe = next;
+        }
+        self.keyframe = Some(keyframe);
+        let state = TrackingState::Tracking;
+        Tracked {
+            state,
+            world_from_camera: Some(pose),
+            inliers,
+            is_keyframe,
+        }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "small counts")]
+    fn wants_keyframe(&self, keyframe: &Keyframe, inliers: usize) -> bool {
+        let share = inliers as f64 / keyframe.most_inliers.max(1) as f64;
+        share < self.config.keyframe_share || inliers < self.config.keyframe_inliers
+    }
+
+    /// A frame without a pose.
+    fn miss(&mut self, keyframe: Keyframe, sight: Sight, started: bool, time: f64) -> Tracked {
+        self.lost += 1;
+        // Before the start, waiting for parallax is normal: only give up when nothing matches any more.
+        let patience = if started {
+            self.config.patience
+        } else {
+            20 * self.config.patience
+        };
+        if self.lost > patience {
+            let pose = keyframe.world_from_camera * self.frame_from_keyframe.inverse();
+            self.builder.begin_epoch();
+            let mut tracked = self.begin(sight, pose, time);
+            tracked.is_keyframe = true;
+            return tracked;
+        }
+        self.keyframe = Some(keyframe);
+        let state = if started {
+            TrackingState::Lost
+        } else {
+            TrackingState::NotInitialized
+        };
+        Tracked {
+            state,
+            world_from_camera: None,
+            inliers: 0,
+            is_keyframe: false,
+        }
+    }
+}
+
+/// A pose far outside the room is a failure, whatever its residuals.
+fn is_plausible(pose: &PnpPose) -> bool {
+    pose.camera_from_world.translation.vector.norm() < 1e3
+}
+
+impl SlamSource for Odometry {
+    fn poll(&mut self) -> Option<SlamUpdate> {
+        self.updates.pop_front()
+    }
+
+    fn map(&self) -> Map {
+        self.builder.map().clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::PinholeCamera;
+    use crate::image::{GrayImage, gaussian_blur};
+    use rand::SeedableRng;
+
+    /// A wall of blurred dots at z = 2, seen by a camera that moves sideways: an image shifted by whole pixels.
+    fn wall(shift: usize) -> GrayImage {
+        let mut state = 5_u64;
+        let pixels: Vec<u8> = (0..400 * 200)
+            .map(|_| {
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                if state >> 61 == 0 { 230 } else { 30 }
+            })
+            .collect();
+        let rows = (0..200).flat_map(|y| pixels[y * 400 + shift..y * 400 + shift + 300].to_vec());
+        let image = GrayImage::new(rows.collect(), 300, 200).unwrap();
+        gaussian_blur(&image.view(), 1.2, 3)
+    }
+
+    fn odometry() -> Odometry {
+        let pinhole = PinholeCamera::new(200.0, 200.0, 150.0, 100.0).unwrap();
+        Odometry::new(Camera::ideal(pinhole), OdometryConfig::default()).unwrap()
+    }
+
+    #[test]
+    fn a_sideways_move_with_depth_is_metric() {
+        let mut odometry = odometry();
+        let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+        let depth = DepthImage::new(vec![2.0; 300 * 200], 300, 200).unwrap();
+        for step in 0..20 {
+            let image = wall(3 * step);
+            let frame = Frame {
+                time: step as f64,
+                image: image.view(),
+                depth: None,
+            };
+            let tracked = odometry.track(&frame, Some(&depth), rng);
+            let pose = tracked.world_from_camera.unwrap();
+            let expected = 3.0 * step as f64 * 2.0 / 200.0;
+            assert!(
+                (pose.translation.vector.x - expected).abs() < 0.02,
+                "{step} {pose}"
+            );
+        }
+        assert!(odometry.is_metric());
+        let map = odometry.map();
+        assert!(map.points.len() > 200 && map.has_observations());
+        let poses =
+            core::iter::from_fn(|| odometry.poll()).filter(|u| u.world_from_camera.is_some());
+        assert_eq!(poses.count(), 20);
+    }
+
+    #[test]
+    fn darkness_is_lost_and_then_a_new_epoch() {
+        let mut odometry = odometry();
+        let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+        let depth = DepthImage::new(vec![2.0; 300 * 200], 300, 200).unwrap();
+        let (light, dark) = (wall(0), GrayImage::filled(300, 200, 0));
+        let mut states = Vec::new();
+        for time in 0..12 {
+            let image = if (2..9).contains(&time) {
+                &dark
+            } else {
+                &light
+            };
+            let frame = Frame {
+                time: f64::from(time),
+                image: image.view(),
+                depth: None,
+            };
+            states.push(odometry.track(&frame, Some(&depth), rng).state);
+        }
+        assert_eq!(states[1], TrackingState::Tracking);
+        assert_eq!(states[4], TrackingState::Lost);
+        assert!(odometry.current_map().epoch >= 1);
+    }
+
+    #[test]
+    fn tiny_images_are_never_tracked() {
+        let mut odometry = odometry();
+        let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+        let image = GrayImage::filled(1, 1, 255);
+        for time in [0.0, 1.0, f64::NAN] {
+            let frame = Frame {
+                time,
+                image: image.view(),
+                depth: None,
+            };
+            let tracked = odometry.track(&frame, None, rng);
+            assert_eq!(tracked.state, TrackingState::NotInitialized);
+            assert_eq!(tracked.world_from_camera, None);
+        }
+    }
+}
