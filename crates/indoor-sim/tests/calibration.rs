@@ -87,6 +87,10 @@ impl Figures {
             ("the same, 3 to 5 observers", gross(&self.few_many[0])),
             ("the same, 10 or more observers", gross(&self.few_many[1])),
             (
+                "share of surface without a point within 0.2 m",
+                quantile(&self.open_surface, 0.5),
+            ),
+            (
                 "points tracked per frame, median",
                 quantile(&self.tracked, 0.5),
             ),

@@ -11,6 +11,21 @@ pub(crate) struct Goal {
     pub(crate) yaw: f64,
 }
 
+impl Goal {
+    /// This goal moved by a share of a way and of a turn.
+    fn moved(self, way: Vector3<f64>, turn: f64, share: f64) -> Self {
+        Self {
+            position: self.position + way * share,
+            yaw: self.yaw + turn * share,
+        }
+    }
+}
+
+/// `a / b`, and 1 where b is 0: nothing to do is done.
+fn ratio(a: f64, b: f64) -> f64 {
+    if b > 0.0 { a / b } else { 1.0 }
+}
+
 /// One thing at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Maneuver {
@@ -53,16 +68,8 @@ impl Maneuver {
                 profile,
                 dead_time,
             } => {
-                let length = way.norm().max(turn.abs());
-                let share = if length > 0.0 {
-                    profile.position(time - dead_time) / length
-                } else {
-                    1.0
-                };
-                Some(Goal {
-                    position: from.position + way * share,
-                    yaw: from.yaw + turn * share,
-                })
+                let done = profile.position(time - dead_time);
+                Some(from.moved(way, turn, ratio(done, way.norm().max(turn.abs()))))
             }
             Self::Brake {
                 from,
@@ -71,41 +78,20 @@ impl Maneuver {
                 seconds,
             } => {
                 let t = time.min(seconds);
-                let reach = if seconds > 0.0 {
-                    t - 0.5 * t * t / seconds
-                } else {
-                    0.0
-                };
-                let position = from.position + velocity * reach;
-                Some(Goal {
-                    position,
-                    yaw: from.yaw + yaw_rate * reach,
-                })
+                Some(from.moved(velocity, yaw_rate, t - 0.5 * ratio(t * t, seconds).min(t)))
             }
             Self::Land {
                 from,
                 floor,
                 seconds,
             } => {
-                let share = if seconds > 0.0 {
-                    (time / seconds).min(1.0)
-                } else {
-                    1.0
-                };
-                let mut position = from.position;
-                position.z += (floor - position.z) * share;
-                Some(Goal {
-                    position,
-                    yaw: from.yaw,
-                })
+                let drop = Vector3::z() * (floor - from.position.z);
+                Some(from.moved(drop, 0.0, ratio(time, seconds).min(1.0)))
             }
             Self::Fall { from, floor } => {
-                let mut position = from.position;
-                position.z = (position.z - 0.5 * GRAVITY * time * time).max(floor);
-                Some(Goal {
-                    position,
-                    yaw: from.yaw,
-                })
+                let drop = 0.5 * GRAVITY * time * time;
+                let drop = drop.min((from.position.z - floor).max(0.0));
+                Some(from.moved(-Vector3::z(), 0.0, drop))
             }
         }
     }

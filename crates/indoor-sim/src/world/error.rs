@@ -23,7 +23,7 @@ pub enum WorldError {
         line: usize,
     },
     /// A number is out of its range or not finite.
-    #[error("floor plan: {name} is {value}, must be in {low}..={high}")]
+    #[error("world: {name} is {value}, must be in {low}..={high}")]
     OutOfRange {
         /// Which number.
         name: &'static str,

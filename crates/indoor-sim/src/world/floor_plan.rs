@@ -159,8 +159,8 @@ impl FloorPlan {
     }
 }
 
-/// Coordinates beyond this are a mistake: 1 km.
-const LIMIT: f64 = 1e3;
+/// Coordinates beyond this are a mistake, metres.
+const LIMIT: f64 = 200.0;
 
 fn validate_furniture(index: usize, item: &Furniture) -> Result<(), WorldError> {
     bounded("furniture.texture", item.texture, 0.0, 4.0)?;
@@ -175,7 +175,12 @@ fn validate_furniture(index: usize, item: &Furniture) -> Result<(), WorldError> 
 }
 
 /// Refuses a value outside `low..=high` or not finite.
-fn bounded(name: &'static str, value: f64, low: f64, high: f64) -> Result<(), WorldError> {
+pub(crate) fn bounded(
+    name: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> Result<(), WorldError> {
     if value >= low && value <= high {
         return Ok(());
     }

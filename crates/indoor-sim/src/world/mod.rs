@@ -80,6 +80,7 @@ impl World {
         texture: &TextureConfig,
         seed: u64,
     ) -> Result<Self, WorldError> {
+        texture.validate()?;
         let mut world = Self::untextured(plan)?;
         let mut rng = stream(seed, Purpose::Texture);
         let painted = texture::paint(&world.plan, &world.solids, texture, &mut rng);
@@ -234,7 +235,7 @@ impl World {
             .map(|value| value * value)
             .sum::<f64>()
             .sqrt();
-        let usable = length > 0.0 && length.is_finite() && max_range.is_finite();
+        let usable = length > 0.0 && length.is_finite() && max_range > 0.0 && max_range.is_finite();
         if !usable || !origin.iter().all(|value| value.is_finite()) {
             return None;
         }
@@ -264,8 +265,9 @@ impl World {
     }
 
     /// Places at `height` that a ball of `radius` can reach from the start, on a grid of `resolution`, all metres.
+    /// A resolution that would need more than four million cells is made coarser; one that is not positive too.
     #[must_use]
     pub fn reachable(&self, height: f64, resolution: f64, radius: f64) -> Reach {
-        reach::reachable(self, height, resolution.max(0.01), radius)
+        reach::reachable(self, height, resolution, radius)
     }
 }

@@ -41,10 +41,13 @@ pub(crate) fn reachable(world: &World, height: f64, resolution: f64, radius: f64
         .collect();
     Reach {
         cells,
-        resolution,
+        resolution: grid.resolution,
         radius,
     }
 }
+
+/// A grid has no more cells than this.
+const MOST_CELLS: f64 = 4e6;
 
 struct Grid {
     low: [f64; 2],
@@ -57,6 +60,8 @@ struct Grid {
 impl Grid {
     fn new(world: &World, height: f64, resolution: f64) -> Self {
         let (low, high) = world.bounds();
+        let area = (high[0] - low[0]) * (high[1] - low[1]);
+        let resolution = resolution.max((area / MOST_CELLS).sqrt());
         let count = |axis: usize| (((high[axis] - low[axis]) / resolution).floor() as usize).max(1);
         Self {
             low: [low[0], low[1]],

@@ -1,11 +1,17 @@
 //! Paints the surfaces of a world: textured patches, edges, a thin background, and blank walls that carry nothing.
 
+mod brush;
+mod face;
+
 use rand::{Rng, RngExt};
 
-use super::floor_plan::{FloorPlan, Room};
+use super::WorldError;
+use super::floor_plan::{FloorPlan, bounded};
 use super::landmark::Landmark;
 use super::solid::{Solid, SolidKind};
 use crate::random::uniform;
+use brush::contains;
+use face::Face;
 
 /// Densities of the paint. Calibrated against real maps (see the crate's documentation), not measured on surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,18 +46,30 @@ impl Default for TextureConfig {
     }
 }
 
+impl TextureConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`WorldError::OutOfRange`] names the first number that is out of its range.
+    pub fn validate(&self) -> Result<(), WorldError> {
+        bounded("texture.blank_share", self.blank_share, 0.0, 0.5)?;
+        bounded("texture.background", self.background, 0.0, DENSEST)?;
+        bounded("texture.patch", self.patch, 0.0, DENSEST)?;
+        bounded("texture.furniture", self.furniture, 0.0, DENSEST)?;
+        bounded("texture.floor", self.floor, 0.0, DENSEST)?;
+        bounded("texture.ceiling", self.ceiling, 0.0, DENSEST)?;
+        bounded("texture.edge", self.edge, 0.0, DENSEST)
+    }
+}
+
+/// No surface carries more corners per square metre, no edge more per metre.
+const DENSEST: f64 = 1e4;
+
 /// Where the upper row of panels begins, relative to the height of the room.
 const ROW_BORDER: f64 = 0.5;
 
 /// Greatest width of a panel, metres.
 const PANEL: f64 = 1.05;
-
-/// Widest angle between a surface's normal and the direction to the camera, degrees: beyond it a patch is too foreshortened.
-const GRAZING_DEGREES: f64 = 75.0;
-
-/// Ratio between the farthest and the nearest distance at which a corner keeps its look: seven steps of an image
-/// pyramid with factor 1.2, as ORB-SLAM builds it.
-const SCALE_BAND: f64 = 3.583;
 
 /// Landmarks of all surfaces that face a room.
 pub(crate) fn paint(
@@ -81,48 +99,11 @@ struct Painter<'a, R> {
     landmarks: Vec<Landmark>,
 }
 
-/// One side of a solid: its fixed axis and value, and the ranges of the two others.
-#[derive(Clone, Copy)]
-struct Face {
-    solid: usize,
-    axis: usize,
-    outward: f64,
-    value: f64,
-    low: [f64; 2],
-    high: [f64; 2],
-}
-
-impl Face {
-    fn axes(&self) -> [usize; 2] {
-        [(self.axis + 1) % 3, (self.axis + 2) % 3]
-    }
-
-    fn point(&self, uv: [f64; 2]) -> [f64; 3] {
-        let mut point = [0.0; 3];
-        let [u, v] = self.axes();
-        point[self.axis] = self.value;
-        point[u] = uv[0];
-        point[v] = uv[1];
-        point
-    }
-
-    fn normal(&self) -> [f64; 3] {
-        let mut normal = [0.0; 3];
-        normal[self.axis] = self.outward;
-        normal
-    }
-
-    /// The part of the face with these ranges.
-    fn part(&self, low: [f64; 2], high: [f64; 2]) -> Self {
-        Self { low, high, ..*self }
-    }
-}
-
 impl<R: Rng> Painter<'_, R> {
     fn paint_solid(&mut self, index: usize, solid: &Solid) {
         for axis in 0..3 {
             for outward in [-1.0, 1.0] {
-                let face = face_of(index, solid, axis, outward);
+                let face = Face::of(index, solid, axis, outward);
                 match solid.kind {
                     SolidKind::Floor if axis == 2 && outward > 0.0 => {
                         self.paint_by_room(&face, self.config.floor);
@@ -185,13 +166,8 @@ impl<R: Rng> Painter<'_, R> {
 
     /// Texture of the room that a panel faces; 1 when it faces none.
     fn room_texture(&self, panel: &Face) -> f64 {
-        let mut middle = panel.point([0, 1].map(|side| 0.5 * (panel.low[side] + panel.high[side])));
-        middle[panel.axis] += 0.05 * panel.outward;
-        let faced = self
-            .plan
-            .rooms
-            .iter()
-            .find(|room| room_contains(room, middle));
+        let front = panel.front();
+        let faced = self.plan.rooms.iter().find(|room| contains(room, front));
         faced.map_or(1.0, |room| room.texture)
     }
 
@@ -231,119 +207,6 @@ impl<R: Rng> Painter<'_, R> {
             self.scatter(&part, density * vivid);
         }
     }
-
-    /// Landmarks at random on a part of a face.
-    fn scatter(&mut self, face: &Face, density: f64) {
-        let area = (face.high[0] - face.low[0]) * (face.high[1] - face.low[1]);
-        let count = self.whole(area * density);
-        let least_cosine = GRAZING_DEGREES.to_radians().cos();
-        for _ in 0..count {
-            let uv = [
-                uniform(self.rng, face.low[0], face.high[0]),
-                uniform(self.rng, face.low[1], face.high[1]),
-            ];
-            self.place(face.point(uv), face.normal(), least_cosine, face.solid, 0.0);
-        }
-    }
-
-    /// The edges of a box: vertical ones and, for furniture, the upper ones.
-    fn paint_edges(&mut self, index: usize, solid: &Solid) {
-        for along in 0..3 {
-            for (side_a, side_b) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
-                let [a, b] = [(along + 1) % 3, (along + 2) % 3];
-                let lowest = (a == 2 && side_a < 0.0) || (b == 2 && side_b < 0.0);
-                let wall_top = solid.kind != SolidKind::Furniture
-                    && along != 2
-                    && ((a == 2 && side_a > 0.0) || (b == 2 && side_b > 0.0));
-                if wall_top || (lowest && solid.kind != SolidKind::Lintel) {
-                    continue;
-                }
-                let mut corner = [0.0; 3];
-                corner[a] = if side_a < 0.0 {
-                    solid.min[a]
-                } else {
-                    solid.max[a]
-                };
-                corner[b] = if side_b < 0.0 {
-                    solid.min[b]
-                } else {
-                    solid.max[b]
-                };
-                let mut normal = [0.0; 3];
-                normal[a] = side_a * core::f64::consts::FRAC_1_SQRT_2;
-                normal[b] = side_b * core::f64::consts::FRAC_1_SQRT_2;
-                self.paint_edge(index, solid, along, corner, normal);
-            }
-        }
-    }
-
-    fn paint_edge(
-        &mut self,
-        index: usize,
-        solid: &Solid,
-        along: usize,
-        corner: [f64; 3],
-        normal: [f64; 3],
-    ) {
-        let length = solid.max[along] - solid.min[along];
-        let vivid = uniform(self.rng, 0.3, 1.7);
-        for _ in 0..self.whole(length * self.config.edge * vivid) {
-            let mut position = corner;
-            position[along] = uniform(self.rng, solid.min[along], solid.max[along]);
-            self.place(position, normal, EDGE_LEAST_COSINE, index, 0.15);
-        }
-    }
-
-    /// Adds a landmark unless it is buried in another solid or faces no room.
-    fn place(
-        &mut self,
-        position: [f64; 3],
-        normal: [f64; 3],
-        least_cosine: f64,
-        solid: usize,
-        bonus: f64,
-    ) {
-        let strength = (self.rng.random::<f64>() + bonus).min(1.0);
-        let far = 1.2 * (2.3 * self.rng.random::<f64>()).exp();
-        let outside: [f64; 3] = core::array::from_fn(|axis| position[axis] + 0.01 * normal[axis]);
-        let buried = self
-            .solids
-            .iter()
-            .enumerate()
-            .any(|(number, other)| number != solid && other.contains(outside));
-        if buried || !self.faces_a_room(outside) {
-            return;
-        }
-        let near = far / SCALE_BAND;
-        self.landmarks.push(Landmark {
-            position,
-            normal,
-            least_cosine,
-            strength,
-            near,
-            far,
-        });
-    }
-
-    fn faces_a_room(&self, point: [f64; 3]) -> bool {
-        point[2] > 0.0
-            && point[2] < self.plan.height
-            && self
-                .plan
-                .rooms
-                .iter()
-                .any(|room| room_contains(room, point))
-    }
-
-    /// A whole number with the given mean.
-    fn whole(&mut self, mean: f64) -> usize {
-        let part = self.rng.random::<f64>();
-        (mean.clamp(0.0, 1e6) + part).floor() as usize
-    }
-}
-
-fn room_contains(room: &Room, point: [f64; 3]) -> bool {
-    (0..2).all(|axis| room.min[axis] <= point[axis] && point[axis] <= room.max[axis])
 }
 
 /// The odds of a chance, at most 1.
@@ -352,24 +215,5 @@ fn odds(chance: f64) -> f64 {
         1.0
     } else {
         chance / (1.0 - chance)
-    }
-}
-
-/// An edge is seen from everywhere outside of the two faces that meet in it: within 135 degrees less a margin.
-const EDGE_LEAST_COSINE: f64 = -0.5;
-
-fn face_of(solid_index: usize, solid: &Solid, axis: usize, outward: f64) -> Face {
-    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    Face {
-        solid: solid_index,
-        axis,
-        outward,
-        value: if outward < 0.0 {
-            solid.min[axis]
-        } else {
-            solid.max[axis]
-        },
-        low: [solid.min[u], solid.min[v]],
-        high: [solid.max[u], solid.max[v]],
     }
 }
