@@ -20,50 +20,55 @@ const FARTHEST: f64 = 10.0;
 /// Least distance, metres: nearer, the picture is out of focus and moves too fast.
 const NEAREST: f64 = 0.3;
 
-/// The detections of a picture, ascending by landmark. Cost: one test per group of landmarks, one per landmark of
-/// the groups that pass, and one ray cast per landmark that passes.
+/// The detections of a picture, ascending by landmark. Cost: one test per group of landmarks, one per landmark of the
+/// groups that pass, and one ray cast per landmark that passes.
 pub(crate) fn detect(
     world: &World,
     camera: &Camera,
     world_from_camera: &Isometry3<f64>,
     budget: usize,
 ) -> Vec<Detection> {
-    let center = world_from_camera.translation.vector;
     let camera_from_world = world_from_camera.inverse();
-    let mut seen: Vec<Seen> = Vec::new();
-    for group in world.groups() {
-        if !group.may_be_seen(camera, &camera_from_world) {
-            continue;
-        }
-        for number in group.from..group.to {
-            let landmark = &world.landmarks()[number as usize];
-            let ray = Vector3::from(landmark.position) - center;
-            let range = ray.norm();
-            let resolved =
-                range >= landmark.near.max(NEAREST) && range <= landmark.far.min(FARTHEST);
-            let in_camera = camera_from_world.rotation * ray;
-            if resolved
-                && camera.contains(in_camera)
-                && world.sees_landmark(center.into(), landmark)
-            {
-                let detection = Detection {
-                    landmark: number,
-                    range,
-                };
-                let (cell, strength) = (cell_of(camera, in_camera), landmark.strength);
-                seen.push(Seen {
-                    cell,
-                    rank: 0,
-                    strength,
-                    detection,
-                });
-            }
-        }
-    }
+    let groups = world.groups().iter();
+    let mut seen: Vec<Seen> = groups
+        .filter(|group| group.may_be_seen(camera, &camera_from_world))
+        .flat_map(|group| group.from..group.to)
+        .filter_map(|number| look(world, camera, world_from_camera, number))
+        .collect();
     spread(&mut seen, budget);
     let mut detections: Vec<Detection> = seen.into_iter().map(|seen| seen.detection).collect();
     detections.sort_unstable_by_key(|detection| detection.landmark);
     detections
+}
+
+/// A landmark, if the picture shows it.
+fn look(
+    world: &World,
+    camera: &Camera,
+    world_from_camera: &Isometry3<f64>,
+    number: u32,
+) -> Option<Seen> {
+    let landmark = &world.landmarks()[number as usize];
+    let center = world_from_camera.translation.vector;
+    let ray = Vector3::from(landmark.position) - center;
+    let range = ray.norm();
+    let resolved = range >= landmark.near.max(NEAREST) && range <= landmark.far.min(FARTHEST);
+    let in_camera = world_from_camera.rotation.inverse_transform_vector(&ray);
+    let shown = resolved && camera.contains(in_camera);
+    if !shown || !world.sees_landmark(center.into(), landmark) {
+        return None;
+    }
+    let detection = Detection {
+        landmark: number,
+        range,
+    };
+    let cell = cell_of(camera, in_camera);
+    Some(Seen {
+        cell,
+        rank: 0,
+        strength: landmark.strength,
+        detection,
+    })
 }
 
 /// A visible landmark before the budget is spent.

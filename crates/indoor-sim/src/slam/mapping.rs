@@ -186,12 +186,8 @@ impl Mapping {
         observers.push(frame);
         if wrong.is_some() {
             // A wrong match is wrong in one pair of pictures, seldom in more.
-            let keep = if surroundings.rng.random::<f64>() < 0.5 {
-                2
-            } else {
-                3
-            };
-            observers.drain(..observers.len().saturating_sub(keep));
+            let most = surroundings.rng.random_range(2..=3_usize);
+            observers.drain(..observers.len().saturating_sub(most));
         }
         let mut information = Information::default();
         for &observer in &observers {

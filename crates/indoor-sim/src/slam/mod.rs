@@ -6,6 +6,7 @@ mod culling;
 mod detection;
 mod drift;
 mod export;
+mod initialization;
 mod mapping;
 mod outlier;
 mod tracking;

@@ -1,4 +1,4 @@
-//! What happens with each picture: begin a map, track, extend the map, lose it, find back.
+//! What happens with each picture: track the map, extend it, lose it, find back.
 
 use core::time::Duration;
 
@@ -6,11 +6,10 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::RngExt;
 use slam_bridge::{SlamUpdate, TrackingState};
 
+use super::SyntheticSlam;
 use super::detection::{Detection, detect};
-use super::drift::{Drift, Slide, mean_at};
-use super::mapping::{Frame, Mapping, Surroundings};
-use super::triangulation::parallax;
-use super::{LastFrame, Reference, SyntheticSlam};
+use super::drift::{Drift, mean_at};
+use super::mapping::{Frame, Surroundings};
 use crate::random::normal3;
 
 /// Two keyframes are at least this far apart, seconds.
@@ -23,14 +22,11 @@ const KEYFRAME_SHARE: f64 = 0.9;
 /// of the keyframes are within 0.02 to 0.034 of their neighbours.
 const KEYFRAME_BASELINE: f64 = 0.03;
 
-/// A picture that a map may begin with is given up after this long.
-const REFERENCE_AGE: Duration = Duration::from_secs(20);
-
 /// Points born this many keyframes ago anchor the drift.
-const OLD: u32 = 20;
+const OLD: usize = 20;
 
 /// Fewer old points than this anchor nothing.
-const FEW: u32 = 10;
+const FEW: f64 = 10.0;
 
 /// Chance, relative to a right point, that a wrong point is matched again.
 const WRONG_MATCH: f64 = 0.75;
@@ -65,102 +61,6 @@ impl SyntheticSlam {
         });
     }
 
-    /// Compares with the reference picture; begins a map when the camera was truly translated.
-    fn try_to_begin(
-        &mut self,
-        time: Duration,
-        pose: &Isometry3<f64>,
-        detections: Vec<Detection>,
-    ) -> (Option<Isometry3<f64>>, usize) {
-        let fresh = Reference {
-            time,
-            pose: *pose,
-            detections,
-        };
-        let Some(reference) = self.reference.take() else {
-            self.reference =
-                Some(fresh).filter(|frame| frame.detections.len() >= self.config.least_common);
-            return (None, 0);
-        };
-        let common = self.common_parallax(&reference, &fresh);
-        if common.len() < self.config.least_common || time > reference.time + REFERENCE_AGE {
-            self.reference =
-                Some(fresh).filter(|frame| frame.detections.len() >= self.config.least_common);
-            return (None, 0);
-        }
-        let baseline = (reference.pose.translation.vector - pose.translation.vector).norm();
-        let median = common[common.len() / 2];
-        if baseline < self.config.least_baseline || median < self.config.least_parallax {
-            self.reference = Some(reference);
-            return (None, 0);
-        }
-        self.begin_map(&reference, &fresh)
-    }
-
-    /// Parallax of the landmarks that both pictures show, ascending, rad.
-    fn common_parallax(&self, a: &Reference, b: &Reference) -> Vec<f64> {
-        let centers = [a.pose, b.pose].map(|pose| pose.translation.vector);
-        let shared = |detection: &&Detection| {
-            a.detections
-                .binary_search_by_key(&detection.landmark, |other| other.landmark)
-                .is_ok()
-        };
-        let mut angles: Vec<f64> = b
-            .detections
-            .iter()
-            .filter(shared)
-            .map(|detection| {
-                let place = self.world.landmarks()[detection.landmark as usize].position;
-                parallax(place.into(), centers[0], centers[1])
-            })
-            .collect();
-        angles.sort_unstable_by(f64::total_cmp);
-        angles
-    }
-
-    fn begin_map(
-        &mut self,
-        first: &Reference,
-        second: &Reference,
-    ) -> (Option<Isometry3<f64>>, usize) {
-        let frame = |reference: &Reference| {
-            let seconds = reference.time.as_secs_f64();
-            Frame::new(seconds, reference.pose, reference.pose, Drift::identity())
-        };
-        let mut mapping = Mapping::new(self.world.landmarks().len());
-        mapping.begin(
-            (frame(first), &first.detections),
-            (frame(second), &second.detections),
-            &mut Surroundings {
-                world: &self.world,
-                config: &self.config,
-                focal: self.camera.fx,
-                rng: &mut self.rng,
-            },
-        );
-        let points = mapping.points.len();
-        if points < self.config.least_common / 2 {
-            self.reference = Some(first.clone());
-            return (None, 0);
-        }
-        self.mapping = mapping;
-        self.state = TrackingState::Tracking;
-        self.failing_since = None;
-        self.last = Some(LastFrame {
-            keyframe_time: second.time,
-            keyframe_pose: second.pose,
-            keyframe_tracked: points,
-            pose: second.pose,
-            drift: Drift::identity(),
-            slide: Slide::new(&mut self.rng),
-            jitter: Vector3::zeros(),
-        });
-        (
-            Some(self.in_map(&first.pose.inverse(), &second.pose)),
-            points,
-        )
-    }
-
     /// Tracks the map, or tries to recognise it when lost.
     fn track(
         &mut self,
@@ -186,8 +86,9 @@ impl SyntheticSlam {
         let Some(estimate) = self.estimate_pose(pose, detections, &right) else {
             return (None, 0);
         };
-        if right.len() >= needed {
-            self.consider_keyframe(time, pose, &estimate, detections, (&right, &wrong));
+        if right.len() >= needed && self.wants_keyframe(time, pose, detections, right.len()) {
+            let mut matched = [right.as_slice(), &wrong].concat();
+            self.add_keyframe(time, (pose, &estimate), detections, &mut matched);
         }
         let first = self
             .mapping
@@ -263,27 +164,34 @@ impl SyntheticSlam {
 
     /// Lets the drift grow with the motion since the last frame, and pulls it back to that of old points in view.
     fn slide(&mut self, pose: &Isometry3<f64>, matched: &[u32]) {
+        let center = pose.translation.vector;
+        let (anchor, share) = self.anchor(center, matched);
         let Some(last) = self.last.as_mut() else {
             return;
         };
-        let center = pose.translation.vector;
         let moved = (center - last.pose.translation.vector).norm();
         let turned = pose.rotation.angle_to(&last.pose.rotation);
+        let config = &self.config;
         let amount = (
-            self.config.drift_per_meter * moved,
-            self.config.drift_per_radian * turned,
+            config.drift_per_meter * moved,
+            config.drift_per_radian * turned,
         );
         let open = last.slide.apply(&last.drift, center, amount);
         last.pose = *pose;
+        let parts = [(anchor, share), (open, 1.0 - share)];
+        last.drift = mean_at(center, parts.into_iter()).unwrap_or(open);
+    }
+
+    /// The mean drift of the old points in view, and their share of the matched ones; share 0 when they are few.
+    fn anchor(&self, center: Vector3<f64>, matched: &[u32]) -> (Drift, f64) {
         let frames = &self.mapping.frames;
-        let newest = frames.len() as u32;
         let mut weights = vec![0.0; frames.len()];
-        let mut old = 0;
+        let mut old = 0.0;
         for &index in matched {
-            let born = self.mapping.points[index as usize].born;
-            if born + OLD < newest {
-                weights[born as usize] += 1.0;
-                old += 1;
+            let born = self.mapping.points[index as usize].born as usize;
+            if born + OLD < frames.len() {
+                weights[born] += 1.0;
+                old += 1.0;
             }
         }
         let used = weights
@@ -291,46 +199,52 @@ impl SyntheticSlam {
             .zip(frames)
             .filter(|(weight, _)| **weight > 0.0);
         let anchor = mean_at(center, used.map(|(&weight, frame)| (frame.drift, weight)));
-        let share = if old < FEW {
-            0.0
-        } else {
-            f64::from(old) / matched.len() as f64
-        };
-        last.drift = anchor
-            .and_then(|anchor| mean_at(center, [(anchor, share), (open, 1.0 - share)].into_iter()))
-            .unwrap_or(open);
+        match anchor {
+            Some(anchor) if old >= FEW => (anchor, old / matched.len() as f64),
+            _ => (Drift::identity(), 0.0),
+        }
     }
 
-    /// Adds a keyframe when the picture shows much that the last one did not.
-    fn consider_keyframe(
+    /// Whether the picture shows so much that the last keyframe did not that it should become one.
+    fn wants_keyframe(
         &mut self,
         time: Duration,
         pose: &Isometry3<f64>,
-        estimate: &Isometry3<f64>,
         detections: &[Detection],
-        (right, wrong): (&[u32], &[u32]),
+        tracked: usize,
+    ) -> bool {
+        let Some(last) = self.last.as_mut() else {
+            return false;
+        };
+        let few = (tracked as f64) < KEYFRAME_SHARE * last.keyframe_tracked as f64;
+        let moved = (pose.translation.vector - last.keyframe_pose.translation.vector).norm();
+        let far = moved > KEYFRAME_BASELINE * median_range(detections);
+        let wanted = (few || far) && time >= last.keyframe_time + KEYFRAME_PAUSE;
+        last.keyframe_tracked = last.keyframe_tracked.max(tracked);
+        wanted
+    }
+
+    /// Makes the picture a keyframe.
+    fn add_keyframe(
+        &mut self,
+        time: Duration,
+        (pose, estimate): (&Isometry3<f64>, &Isometry3<f64>),
+        detections: &[Detection],
+        matched: &mut [u32],
     ) {
         let Some(last) = self.last.as_mut() else {
             return;
         };
-        let few = (right.len() as f64) < KEYFRAME_SHARE * last.keyframe_tracked as f64;
-        let moved = (pose.translation.vector - last.keyframe_pose.translation.vector).norm();
-        let far = moved > KEYFRAME_BASELINE * median_range(detections);
-        if !(few || far) || time < last.keyframe_time + KEYFRAME_PAUSE {
-            last.keyframe_tracked = last.keyframe_tracked.max(right.len());
-            return;
-        }
         last.slide.change(&mut self.rng);
-        let drift = last.drift;
         last.keyframe_time = time;
         last.keyframe_pose = *pose;
-        let mut matched = [right, wrong].concat();
+        // The next frames say what can be expected to be tracked.
+        last.keyframe_tracked = 0;
         matched.sort_unstable();
-        let frame = Frame::new(time.as_secs_f64(), *pose, *estimate, drift);
         self.mapping.insert(
-            frame,
+            Frame::new(time.as_secs_f64(), *pose, *estimate, last.drift),
             detections,
-            &matched,
+            matched,
             &mut Surroundings {
                 world: &self.world,
                 config: &self.config,
@@ -338,8 +252,6 @@ impl SyntheticSlam {
                 rng: &mut self.rng,
             },
         );
-        // The next frames say what can be expected to be tracked.
-        last.keyframe_tracked = 0;
     }
 }
 

@@ -85,25 +85,13 @@ fn add_row(
         };
         let name = format!("{side} room {}", number + 1);
         if number > 0 && rng.random::<f64>() < 0.25 {
+            let between = format!("{side} room {number} - {name}");
             let y = uniform(rng, low + 0.8, high - 0.8);
-            let width = uniform(rng, 0.8, 1.0);
-            let name = format!("{side} room {number} - {name}");
-            plan.doors.push(Door {
-                name,
-                center: [from, y],
-                width,
-                height: 2.05,
-            });
+            plan.doors.push(draw_door(between, [from, y], rng));
         }
         let x = uniform(rng, from + 0.7, to - 0.7);
-        let width = uniform(rng, 0.8, 1.0);
-        let door = Door {
-            name: format!("{name} - corridor"),
-            center: [x, border],
-            width,
-            height: 2.05,
-        };
-        plan.doors.push(door);
+        plan.doors
+            .push(draw_door(format!("{name} - corridor"), [x, border], rng));
         let texture = uniform(rng, 0.9, 1.7);
         plan.rooms.push(Room {
             name,
@@ -112,6 +100,15 @@ fn add_row(
             texture,
         });
         from = to;
+    }
+}
+
+fn draw_door(name: String, center: [f64; 2], rng: &mut impl Rng) -> Door {
+    Door {
+        name,
+        center,
+        width: uniform(rng, 0.8, 1.0),
+        height: 2.05,
     }
 }
 
