@@ -14,16 +14,16 @@ trap cleanup EXIT
 cargo build --quiet -p tello-sdk --example emulator
 binary="${CARGO_TARGET_DIR:-target}/debug/examples/emulator"
 
-# fly NAME COMMAND...: a fresh drone, the client with a time limit.
+# fly NAME PROTOCOL TIMING COMMAND...: a fresh drone, the client with a time limit.
 passed=0 failed=0 skipped=0
 fly() {
-    local name="$1"
-    shift
-    "$binary" "$address" "$port" 1 2.0 ideal fast >"$work/emulator.log" 2>&1 &
+    local name="$1" protocol="$2" timing="$3"
+    shift 3
+    "$binary" "$address" "$port" 1 "$protocol" ideal "$timing" >"$work/emulator.log" 2>&1 &
     emulator=$!
     if timeout 90 "$@" >"$work/client.log" 2>&1; then
         passed=$((passed + 1))
-        tail -n 1 "$work/client.log"
+        grep -a "flown" "$work/client.log" | tail -n 1
     else
         failed=$((failed + 1))
         echo "$name: FAILED"
@@ -34,17 +34,22 @@ fly() {
 }
 
 if python3 -m venv "$work/venv" 2>/dev/null; then
-    "$work/venv/bin/pip" install --quiet djitellopy==2.5.0 easytello==0.0.7 tello-asyncio==2.1.3
+    "$work/venv/bin/pip" install --quiet djitellopy==2.5.0 easytello==0.0.7 tello-asyncio==2.1.3 tellopy==0.7.0
     for client in djitellopy easytello tello_asyncio; do
-        fly "$client" "$work/venv/bin/python" "$here/fly_$client.py" "$address" "$port"
+        fly "$client" 2.0 fast "$work/venv/bin/python" "$here/fly_$client.py" "$address" "$port"
     done
+    fly tellopy binary real "$work/venv/bin/python" "$here/fly_tellopy.py" "$address" "$port"
+    # The other way round: our client flies tellopy's own drone (the emulator just runs beside it).
+    cargo build --quiet -p tello-sdk --example 04_binary_flight
+    fly tellopy-fake-drone binary real "$work/venv/bin/python" "$here/serve_tellopy_fake.py" \
+        "$(dirname "$binary")/04_binary_flight"
 else
-    skipped=$((skipped + 3))
-    echo "python3 venv is not available: three clients skipped"
+    skipped=$((skipped + 5))
+    echo "python3 venv is not available: five checks skipped"
 fi
 if command -v npm >/dev/null; then
     npm install --silent --no-fund --no-audit --prefix "$work" tello-drone@3.0.4
-    fly tello-drone node "$here/fly_tello_drone.js" "$address" "$port" "$work/node_modules"
+    fly tello-drone 2.0 fast node "$here/fly_tello_drone.js" "$address" "$port" "$work/node_modules"
 else
     skipped=$((skipped + 1))
     echo "npm is not available: one client skipped"

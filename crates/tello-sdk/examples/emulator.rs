@@ -1,4 +1,4 @@
-//! Emulated drones on UDP until interrupted: `emulator [ADDRESS] [COMMAND_PORT] [COUNT] [1.3|2.0|3.0] [ideal|wifi|lossy] [fast]`
+//! Emulated drones on UDP until interrupted: `emulator [ADDRESS] [COMMAND_PORT] [COUNT] [1.3|2.0|3.0|binary] [ideal|wifi|lossy] [fast]`
 //!
 //! Input: the arguments, by default `127.0.0.2 18889 1 2.0 ideal`. Output: a line with the first address, then nothing.
 
@@ -27,7 +27,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         "1.3" => SdkVersion::V1_3,
         "2.0" => SdkVersion::V2_0,
         "3.0" => SdkVersion::V3_0,
-        other => return Err(format!("SDK {other} is not 1.3, 2.0 or 3.0").into()),
+        "binary" => {
+            config.binary = true;
+            SdkVersion::V2_0
+        }
+        other => return Err(format!("SDK {other} is not 1.3, 2.0, 3.0 or binary").into()),
     };
     config.drone.faults = match argument(4).unwrap_or("ideal") {
         "ideal" => Faults::default(),

@@ -28,8 +28,8 @@ fn with_drone(address: Ipv4Addr, body: impl FnOnce(DroneConfig) + std::panic::Un
     let config = ServeConfig {
         address,
         command_port: free_port(address),
-        count: 1,
         drone,
+        ..ServeConfig::default()
     };
     let stop = AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -169,8 +169,8 @@ fn video_comes_without_loss_and_fresh() {
     let config = ServeConfig {
         address,
         command_port: free_port(address),
-        count: 1,
         drone,
+        ..ServeConfig::default()
     };
     let stop = AtomicBool::new(false);
     std::thread::scope(|scope| {

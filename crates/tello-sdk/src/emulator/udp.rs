@@ -4,6 +4,7 @@
 //! apart by source address; its state and video sockets are bound to that address too. One thread per drone.
 
 use super::{Channel, Emulator, EmulatorConfig, Kinematic, VideoSource};
+use crate::binary::BinaryEmulator;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -21,6 +22,8 @@ pub struct ServeConfig {
     pub command_port: u16,
     /// How many drones, on consecutive addresses. Default 1.
     pub count: u8,
+    /// Whether they speak the binary protocol instead of the text protocol. Default false.
+    pub binary: bool,
     /// What each drone is like; the seed grows by one from drone to drone.
     pub drone: EmulatorConfig,
 }
@@ -31,6 +34,7 @@ impl Default for ServeConfig {
             address: Ipv4Addr::new(127, 0, 0, 2),
             command_port: 18_889,
             count: 1,
+            binary: false,
             drone: EmulatorConfig::default(),
         }
     }
@@ -85,7 +89,11 @@ pub fn serve_with_cameras(
         .collect::<Result<_, _>>()?;
     std::thread::scope(|scope| {
         for (index, drone) in (0_u8..).zip(drones) {
-            scope.spawn(move || drone.run(cameras(index), stop));
+            if config.binary {
+                scope.spawn(move || drone.run_binary(stop));
+            } else {
+                scope.spawn(move || drone.run(cameras(index), stop));
+            }
         }
     });
     Ok(())
@@ -153,6 +161,26 @@ impl Drone {
             if let Ok((length, from)) = self.command.recv_from(&mut buffer) {
                 let bytes = buffer.get(..length).unwrap_or_default();
                 drone.receive(start.elapsed(), from, bytes);
+            }
+        }
+    }
+
+    /// The binary protocol: video is not sent.
+    fn run_binary(self, stop: &AtomicBool) {
+        let mut drone = BinaryEmulator::new(Kinematic::new(self.config.timing));
+        let start = Instant::now();
+        let mut client = None;
+        let mut buffer = [0_u8; 2048];
+        while !stop.load(Ordering::Relaxed) {
+            while let (Some(bytes), Some(to)) = (drone.poll(start.elapsed()), client) {
+                let _ = self.command.send_to(&bytes, to);
+            }
+            let wait = drone.next_deadline().saturating_sub(start.elapsed());
+            let wait = wait.clamp(Duration::from_millis(1), Duration::from_millis(50));
+            let _ = self.command.set_read_timeout(Some(wait));
+            if let Ok((length, from)) = self.command.recv_from(&mut buffer) {
+                client = Some(from);
+                drone.receive(start.elapsed(), buffer.get(..length).unwrap_or_default());
             }
         }
     }
