@@ -1,5 +1,8 @@
 //! Recorded image sequences: decoding of PNG and JPEG, TUM folders, plain folders (feature `image-files`).
 
 mod decode;
+mod folder;
+mod listing;
 
 pub use decode::{DecodeError, decode_depth, decode_gray};
+pub use folder::{ImageSequence, LoadedFrame, SequenceError};

@@ -1,0 +1,262 @@
+//! A recorded sequence in a folder, in either of two layouts.
+//!
+//! ```text
+//! TUM    rgb.txt, depth.txt (optional): "timestamp filename" lines; depth 5000 units per metre
+//! plain  color/ (or image/, rgb/, gray/), depth/ (optional): files paired by name; times from timestamps.txt (one per line)
+//!        or 1/30 s apart; depth 1000 units per metre
+//! both   camera-intrinsics.txt (optional): the 3x3 matrix K
+//! ```
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::listing::{Entry, pair, parse_list};
+use super::{DecodeError, decode_depth, decode_gray};
+use crate::camera::PinholeCamera;
+use crate::depth::DepthImage;
+use crate::image::GrayImage;
+
+/// Why a sequence cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SequenceError {
+    /// A file or folder cannot be read.
+    #[error("{} cannot be read", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// An image cannot be decoded.
+    #[error("{} cannot be decoded", path.display())]
+    Image {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: DecodeError,
+    },
+    /// A line of a list is not "timestamp filename" (or a timestamp, or three numbers).
+    #[error("line {line} of {name} is not understood")]
+    Line {
+        /// File name.
+        name: &'static str,
+        /// Counted from 1.
+        line: usize,
+    },
+    /// The folder is no sequence.
+    #[error("{} has neither rgb.txt nor a folder color, image, rgb or gray with PNG or JPEG files", path.display())]
+    NotASequence {
+        /// The folder.
+        path: PathBuf,
+    },
+}
+
+/// A sequence: times and files. Images are read one at a time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImageSequence {
+    frames: Vec<FrameFiles>,
+    /// Ideal camera, where the folder names one.
+    pub camera: Option<PinholeCamera>,
+    /// Depth readings per metre; set by the layout, change before loading when the recording differs.
+    pub depth_units_per_metre: f32,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct FrameFiles {
+    time: f64,
+    image: PathBuf,
+    depth: Option<PathBuf>,
+}
+
+/// A frame in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedFrame {
+    /// Seconds.
+    pub time: f64,
+    /// The image.
+    pub image: GrayImage,
+    /// Its depth, if recorded.
+    pub depth: Option<DepthImage>,
+}
+
+impl LoadedFrame {
+    /// The form that trackers take.
+    #[must_use]
+    pub fn frame(&self) -> crate::Frame<'_> {
+        crate::Frame {
+            time: self.time,
+            image: self.image.view(),
+            depth: self.depth.as_ref(),
+        }
+    }
+}
+
+/// Image and depth stamps of a TUM sequence belong together up to this many seconds apart.
+const PAIRING: f64 = 0.02;
+
+impl ImageSequence {
+    /// Opens a folder in either layout; reads its lists, no image yet.
+    ///
+    /// # Errors
+    /// [`SequenceError`] for missing files and lines that are not understood.
+    pub fn open(folder: &Path) -> Result<Self, SequenceError> {
+        let (frames, depth_units_per_metre) = match fs::read_to_string(folder.join("rgb.txt")) {
+            Ok(list) => (tum_frames(folder, &list)?, 5000.0),
+            Err(_) => (plain_frames(folder)?, 1000.0),
+        };
+        Ok(Self {
+            frames,
+            camera: read_camera(folder)?,
+            depth_units_per_metre,
+        })
+    }
+
+    /// Number of frames.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.frames.is_empty()
+    }
+
+    /// Reads and decodes frame `index`; `None` past the end.
+    ///
+    /// # Errors
+    /// [`SequenceError`] when its files cannot be read or decoded.
+    pub fn load(&self, index: usize) -> Result<Option<LoadedFrame>, SequenceError> {
+        let Some(files) = self.frames.get(index) else {
+            return Ok(None);
+        };
+        let decoded = |path: &Path, source| SequenceError::Image {
+            path: path.to_owned(),
+            source,
+        };
+        let image = decode_gray(&read(&files.image)?).map_err(|e| decoded(&files.image, e))?;
+        let depth = match &files.depth {
+            None => None,
+            Some(path) => Some(
+                decode_depth(&read(path)?, self.depth_units_per_metre)
+                    .map_err(|e| decoded(path, e))?,
+            ),
+        };
+        Ok(Some(LoadedFrame {
+            time: files.time,
+            image,
+            depth,
+        }))
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, SequenceError> {
+    fs::read(path).map_err(|source| SequenceError::File {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn tum_frames(folder: &Path, list: &str) -> Result<Vec<FrameFiles>, SequenceError> {
+    let images = parse_list(list, "rgb.txt")?;
+    let depths = match fs::read_to_string(folder.join("depth.txt")) {
+        Ok(list) => parse_list(&list, "depth.txt")?,
+        Err(_) => Vec::new(),
+    };
+    let partners = pair(&images, &depths, PAIRING);
+    let frame = |(image, partner): (&Entry, Option<usize>)| FrameFiles {
+        time: image.time,
+        image: folder.join(&image.file),
+        depth: partner.map(|k| folder.join(&depths[k].file)),
+    };
+    Ok(images.iter().zip(partners).map(frame).collect())
+}
+
+fn plain_frames(folder: &Path) -> Result<Vec<FrameFiles>, SequenceError> {
+    let images = ["color", "image", "rgb", "gray"]
+        .iter()
+        .map(|name| image_files(&folder.join(name)))
+        .find(|files| !files.is_empty());
+    let images = images.ok_or_else(|| SequenceError::NotASequence {
+        path: folder.to_owned(),
+    })?;
+    let times = read_times(folder)?;
+    let frame = |(index, image): (usize, PathBuf)| {
+        let depth = image
+            .file_stem()
+            .map(|stem| folder.join("depth").join(stem).with_extension("png"));
+        #[expect(clippy::cast_precision_loss, reason = "frame numbers are small")]
+        let time = times.get(index).copied().unwrap_or(index as f64 / 30.0);
+        FrameFiles {
+            time,
+            image,
+            depth: depth.filter(|path| path.is_file()),
+        }
+    };
+    Ok(images.into_iter().enumerate().map(frame).collect())
+}
+
+fn image_files(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let is_image = |path: &PathBuf| {
+        let extension = path
+            .extension()
+            .and_then(|e| e.to_str())
+            .map(str::to_ascii_lowercase);
+        matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg"))
+    };
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| entry.ok().map(|e| e.path()))
+        .filter(is_image)
+        .collect();
+    files.sort();
+    files
+}
+
+fn read_times(folder: &Path) -> Result<Vec<f64>, SequenceError> {
+    let Ok(text) = fs::read_to_string(folder.join("timestamps.txt")) else {
+        return Ok(Vec::new());
+    };
+    let parse = |(index, line): (usize, &str)| {
+        let value = line
+            .split_whitespace()
+            .next()
+            .and_then(|word| word.parse::<f64>().ok());
+        value.filter(|v| v.is_finite()).ok_or(SequenceError::Line {
+            name: "timestamps.txt",
+            line: index + 1,
+        })
+    };
+    let filled = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.starts_with('#');
+    text.lines().enumerate().filter(filled).map(parse).collect()
+}
+
+fn read_camera(folder: &Path) -> Result<Option<PinholeCamera>, SequenceError> {
+    const NAME: &str = "camera-intrinsics.txt";
+    let Ok(text) = fs::read_to_string(folder.join(NAME)) else {
+        return Ok(None);
+    };
+    let numbers: Vec<f64> = text
+        .split_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    match numbers[..] {
+        [fx, _, cx, _, fy, cy, ..] => {
+            PinholeCamera::new(fx, fy, cx, cy)
+                .map(Some)
+                .map_err(|_| SequenceError::Line {
+                    name: NAME,
+                    line: 1,
+                })
+        }
+        _ => Err(SequenceError::Line {
+            name: NAME,
+            line: 1,
+        }),
+    }
+}

@@ -1,0 +1,122 @@
+//! Real recorded sequences through the whole chain; skipped where the recordings are not there.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test file")]
+#![cfg(feature = "image-files")]
+
+use std::path::PathBuf;
+
+use edge_slam::camera::{Camera, PinholeCamera, RadialTangential};
+use edge_slam::edge::{CannyConfig, JunctionConfig, canny, find_junctions, trace_chains};
+use edge_slam::evaluation::{Alignment, ApeConfig, TimedPose, absolute_pose_error};
+use edge_slam::odometry::{Odometry, OdometryConfig};
+use edge_slam::sequence::ImageSequence;
+use rand::SeedableRng;
+use slam_bridge::read_tum;
+
+fn folder(name: &str) -> Option<PathBuf> {
+    let root = std::env::var("EXPLORER_DATA")
+        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
+    let path: PathBuf = [root.as_str(), "data", name].iter().collect();
+    if path.is_dir() {
+        return Some(path);
+    }
+    println!("skipped: {} is not there", path.display());
+    None
+}
+
+fn run(sequence: &ImageSequence, camera: Camera, frames: usize, use_depth: bool) -> Vec<TimedPose> {
+    let mut odometry = Odometry::new(camera, OdometryConfig::default()).unwrap();
+    let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+    let mut trajectory = Vec::new();
+    for index in 0..frames.min(sequence.len()) {
+        let loaded = sequence.load(index).unwrap().unwrap();
+        let depth = loaded.depth.as_ref().filter(|_| use_depth);
+        if let Some(pose) = odometry
+            .track(&loaded.frame(), depth, rng)
+            .world_from_camera
+        {
+            trajectory.push(TimedPose {
+                time: loaded.time,
+                pose,
+            });
+        }
+    }
+    trajectory
+}
+
+#[test]
+fn a_kitchen_is_tracked_with_depth() {
+    let Some(folder) = folder("seven_scenes_redkitchen_part1") else {
+        return;
+    };
+    let sequence = ImageSequence::open(&folder).unwrap();
+    let camera = Camera::ideal(sequence.camera.unwrap());
+    let trajectory = run(&sequence, camera, 40, true);
+    assert!(trajectory.len() >= 38, "{}", trajectory.len());
+    let truth = std::fs::read(folder.join("groundtruth_tum.txt")).unwrap();
+    let truth = read_tum(&truth[..]).unwrap();
+    let config = ApeConfig {
+        alignment: Alignment::Se3,
+        ..Default::default()
+    };
+    let ape = absolute_pose_error(&trajectory, &truth, &config).unwrap();
+    assert!(ape.translation.rmse < 0.06, "{}", ape.translation.rmse);
+}
+
+#[test]
+fn a_turning_camera_is_tracked_with_depth() {
+    let Some(folder) = folder("tum_fr1_rpy_part1") else {
+        return;
+    };
+    let sequence = ImageSequence::open(&folder).unwrap();
+    let pinhole = PinholeCamera::new(517.306408, 516.469215, 318.643040, 255.313989).unwrap();
+    let distortion = RadialTangential {
+        k1: 0.262383,
+        k2: -0.953104,
+        p1: -0.005358,
+        p2: 0.002628,
+        k3: 1.163314,
+    };
+    let trajectory = run(
+        &sequence,
+        Camera {
+            pinhole,
+            distortion,
+        },
+        60,
+        true,
+    );
+    assert!(trajectory.len() >= 36, "{}", trajectory.len());
+    let truth = std::fs::read(folder.join("groundtruth.txt")).unwrap();
+    let truth = read_tum(&truth[..]).unwrap();
+    let config = ApeConfig {
+        alignment: Alignment::Se3,
+        max_difference: 0.02,
+    };
+    let ape = absolute_pose_error(&trajectory, &truth, &config).unwrap();
+    assert!(ape.translation.rmse < 0.06, "{}", ape.translation.rmse);
+}
+
+#[test]
+fn a_kitchen_has_edges_and_corners() {
+    let Some(folder) = folder("seven_scenes_redkitchen_part1") else {
+        return;
+    };
+    let loaded = ImageSequence::open(&folder)
+        .unwrap()
+        .load(0)
+        .unwrap()
+        .unwrap();
+    let edges = canny(&loaded.image.view(), &CannyConfig::default()).unwrap();
+    let chains = trace_chains(&edges, 20);
+    let config = JunctionConfig::default();
+    let all = find_junctions(&edges, &chains, None, &config);
+    let solid = find_junctions(&edges, &chains, loaded.depth.as_ref(), &config);
+    assert!(chains.len() > 50 && all.len() > 3);
+    assert!(solid.len() <= all.len());
+    println!(
+        "{} chains, {} junctions, {} not at depth jumps",
+        chains.len(),
+        all.len(),
+        solid.len()
+    );
+}
