@@ -21,16 +21,26 @@ impl DistanceField {
         let mut field: Vec<u16> = (0..grid.len())
             .map(|index| if marked(index) { 0 } else { FAR })
             .collect();
-        let strides = grid.strides();
-        let mut line = Vec::new();
-        for axis in [2, 1, 0] {
-            let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-            for i in 0..grid.size[a] {
-                for j in 0..grid.size[b] {
-                    let start = i * strides[a] + j * strides[b];
-                    spread(&mut field, start, strides[axis], grid.size[axis], &mut line);
-                }
-            }
+        let [plane, row, _] = grid.strides();
+        if row == 0 || plane == 0 {
+            return DistanceField {
+                quadruple_squared: field,
+            };
+        }
+        for line in field.chunks_exact_mut(row) {
+            along_row(line);
+        }
+        let mut former = Vec::new();
+        for x in 0..grid.size[0] {
+            across_rows(
+                &mut field[x * plane..(x + 1) * plane],
+                row,
+                row,
+                &mut former,
+            );
+        }
+        for y in 0..grid.size[1] {
+            across_rows(&mut field[y * row..], row, plane, &mut former);
         }
         DistanceField {
             quadruple_squared: field,
@@ -51,27 +61,65 @@ impl DistanceField {
     }
 }
 
-/// One line of one pass: each entry takes the least of its neighbours plus what their offset costs.
-fn spread(field: &mut [u16], start: usize, stride: usize, count: usize, line: &mut Vec<u16>) {
-    line.clear();
-    line.extend((0..count).map(|i| field[start + i * stride]));
-    if line.iter().all(|&value| value == FAR) || line.iter().all(|&value| value == 0) {
-        return;
+/// What an offset of so many voxels costs.
+fn cost(offset: usize) -> u16 {
+    if offset < REACH {
+        ((2 * offset - 1) * (2 * offset - 1)) as u16
+    } else {
+        FAR
     }
-    for i in 0..count {
-        let mut best = line[i];
+}
+
+/// The first pass, along a row of marks: the nearest mark on either side.
+fn along_row(row: &mut [u16]) {
+    let mut since = REACH;
+    for value in row.iter_mut() {
+        since = if *value == 0 {
+            0
+        } else {
+            (since + 1).min(REACH)
+        };
+        *value = if since == 0 { 0 } else { cost(since) };
+    }
+    since = REACH;
+    for value in row.iter_mut().rev() {
+        since = if *value == 0 {
+            0
+        } else {
+            (since + 1).min(REACH)
+        };
+        *value = if since == 0 {
+            0
+        } else {
+            cost(since).min(*value)
+        };
+    }
+}
+
+/// A later pass, for all rows that start `stride` apart: each takes the least of the rows beside it plus
+/// what their offset costs. Whole rows at a time, so that it vectorises.
+fn across_rows(field: &mut [u16], row: usize, stride: usize, former: &mut Vec<u16>) {
+    former.clear();
+    for line in field.chunks(stride) {
+        former.extend_from_slice(&line[..row]);
+    }
+    let count = former.len() / row;
+    for (i, line) in field.chunks_mut(stride).enumerate() {
+        let line = &mut line[..row];
         for offset in 1..REACH {
-            let cost = ((2 * offset - 1) * (2 * offset - 1)) as u16;
-            if cost >= best {
+            let cost = cost(offset);
+            if line.iter().all(|&value| value <= cost) {
                 break;
             }
-            if i >= offset {
-                best = best.min(line[i - offset] + cost);
-            }
-            if i + offset < count {
-                best = best.min(line[i + offset] + cost);
+            let beside = [
+                i.checked_sub(offset),
+                Some(i + offset).filter(|&j| j < count),
+            ];
+            for j in beside.into_iter().flatten() {
+                for (value, other) in line.iter_mut().zip(&former[j * row..(j + 1) * row]) {
+                    *value = (*value).min(other + cost);
+                }
             }
         }
-        field[start + i * stride] = best;
     }
 }

@@ -100,6 +100,9 @@ fn is_continuous(triangle: &[Ray; 3], config: &FreeSpaceConfig) -> bool {
 /// How far apart, in voxels, rays may be before what lies between them is filled.
 const GAP: f64 = 0.7;
 
+/// Longest edge of the parts of a triangle that get a ray each, in voxels.
+const PART: f64 = 1.4;
+
 /// Rays to the centres of the equal parts of a triangle whose edges are about a voxel long. They start
 /// where the triangle's own rays are farther apart than [`GAP`], since before that these cross every
 /// voxel that the filling would.
@@ -116,7 +119,7 @@ fn places(triangle: [Ray; 3], config: &FreeSpaceConfig) -> impl Iterator<Item = 
     let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
     let from = GAP * config.resolution / longest;
     let parts = if from < 1.0 {
-        (longest / config.resolution).ceil().min(1000.0) as usize
+        (longest / (PART * config.resolution)).ceil().min(1000.0) as usize
     } else {
         0
     };

@@ -119,10 +119,12 @@ impl FreeSpace {
         self.reserve(rays.iter().flat_map(|ray| [ray.origin, config.reach(ray)]))?;
         self.keyframes = keyframes;
         let mut carver = Carver::new(&config, &self.grid, &mut self.evidence, &mut self.rays);
-        for (ray, &keyframe) in rays.iter().zip(&ids) {
-            carver.carve(ray, keyframe);
-        }
-        for (keyframe, rays) in evidence::by_keyframe(&rays, &ids) {
+        for (keyframe, mut rays) in evidence::by_keyframe(&rays, &ids) {
+            // Rays in similar directions cross the same voxels while they are at hand.
+            rays.sort_by_cached_key(Ray::sector);
+            for ray in &rays {
+                carver.carve(ray, keyframe);
+            }
             carver.carve_between(&rays, keyframe);
         }
         let presence = &self.presence;

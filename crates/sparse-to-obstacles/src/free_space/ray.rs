@@ -1,6 +1,7 @@
 //! A line of sight: a keyframe and a point that it sees.
 
 use crate::point::{PointLike, is_finite};
+use crate::vector::sub;
 
 /// A keyframe and a point that it sees. Rays of equal origin count as of the same keyframe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,13 @@ impl Ray {
             origin: position,
             end: point.into(),
         })
+    }
+
+    /// A coarse direction, by which rays can be sorted.
+    pub(super) fn sector(&self) -> (i32, i32) {
+        let [x, y, z] = sub(self.end, self.origin);
+        let level = x.hypot(y);
+        ((24.0 * y.atan2(x)) as i32, (24.0 * z.atan2(level)) as i32)
     }
 
     pub(crate) fn is_finite(&self) -> bool {
