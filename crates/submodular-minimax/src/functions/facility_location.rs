@@ -51,6 +51,15 @@ impl<S: Similarity> FacilityLocation<S> {
         &self.similarity
     }
 
+    /// How often client v counts.
+    pub(super) fn weight(&self, v: usize) -> f64 {
+        self.weights.as_ref().map_or(1.0, |weights| weights[v])
+    }
+
+    pub(super) fn is_truncated(&self) -> bool {
+        self.caps.is_some()
+    }
+
     pub(super) fn serving<'a>(&'a self, base: &Subset) -> Serving<'a, S> {
         let mut serving = Serving {
             function: self,

@@ -1,5 +1,6 @@
 //! Ready-made set functions, dense and sparse, and the joint function of the exploration paper.
 
+mod bounded_greedy;
 mod combine;
 mod coverage;
 mod error;

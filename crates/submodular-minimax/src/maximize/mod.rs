@@ -70,7 +70,7 @@ pub enum MaximizeStop {
 }
 
 impl Maximum {
-    fn start(ground: usize, value: f64) -> Self {
+    pub(crate) fn start(ground: usize, value: f64) -> Self {
         Self {
             picks: Vec::new(),
             set: Subset::empty(ground),
@@ -81,7 +81,7 @@ impl Maximum {
         }
     }
 
-    fn pick(&mut self, element: usize, gain: f64) {
+    pub(crate) fn pick(&mut self, element: usize, gain: f64) {
         self.picks.push(element);
         self.set.insert(element);
         self.gains.push(gain);

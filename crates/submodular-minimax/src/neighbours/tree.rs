@@ -97,6 +97,21 @@ impl RangeTree {
         }
     }
 
+    /// Every box, parents before children and the left child next: its corners, its span in leaf
+    /// order and the position of its right child, 0 for a leaf.
+    pub(crate) fn boxes(
+        &self,
+    ) -> impl Iterator<Item = ([f64; 3], [f64; 3], std::ops::Range<usize>, usize)> + '_ {
+        self.nodes.iter().map(|node| {
+            (
+                node.low,
+                node.high,
+                node.start as usize..node.end as usize,
+                node.right as usize,
+            )
+        })
+    }
+
     /// The index of the point nearest to `center` (ranges do not count); `None` without points.
     pub(crate) fn nearest_to(&self, center: [f64; 3]) -> Option<u32> {
         let mut best: Option<Neighbour> = None;
