@@ -5,8 +5,9 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use nalgebra::{Isometry3, Similarity3};
-use tello_sdk::{Command, Query, Refusal, Reply, Telemetry};
+use tello_sdk::{Command, Refusal, Reply, Telemetry};
 
+use crate::answer::answer;
 use crate::camera::Camera;
 use crate::drone::{Drone, DroneConfig, Order, Phase, StepEvent};
 use crate::slam::{SlamConfig, SyntheticSlam};
@@ -133,7 +134,7 @@ impl Simulator {
     pub fn send(&mut self, command: &Command) -> Result<(), Refused> {
         self.last_heard = self.now;
         if let Command::Query(query) = command {
-            let text = self.answer(*query);
+            let text = answer(*query, &self.drone, &self.telemetry);
             self.replies.push_back(Reply::parse(text.as_bytes()));
             return Ok(());
         }
@@ -340,39 +341,6 @@ impl Simulator {
             if core::mem::take(&mut self.owed) {
                 self.reply("error Auto land");
             }
-        }
-    }
-
-    fn answer(&self, query: Query) -> String {
-        let telemetry = &self.telemetry;
-        match query {
-            Query::Speed => format!("{:.1}", self.drone.speed() * 100.0),
-            Query::Battery => format!("{}", self.drone.charge.percent().floor()),
-            Query::MotorTime => format!("{}s", self.motor_time.as_secs()),
-            Query::Height => {
-                let height = telemetry.height_m.map_or(0.0, |reading| reading.value);
-                format!("{:.0}dm", height * 10.0)
-            }
-            Query::Tof => {
-                let distance = telemetry.tof_m.map_or(0.0, |reading| reading.value);
-                format!("{:.0}mm", distance * 1000.0)
-            }
-            Query::Attitude => {
-                let attitude = telemetry
-                    .attitude
-                    .map(|reading| reading.value)
-                    .unwrap_or_default();
-                let (pitch, roll, yaw) = (attitude.pitch_deg, attitude.roll_deg, attitude.yaw_deg);
-                format!("pitch:{pitch};roll:{roll};yaw:{yaw};")
-            }
-            Query::Barometer => {
-                format!(
-                    "{:.2}",
-                    telemetry.barometer_m.map_or(0.0, |reading| reading.value)
-                )
-            }
-            Query::Wifi => "90".to_owned(),
-            other => format!("unknown command: {}", other.text()),
         }
     }
 }

@@ -223,7 +223,10 @@ fn default_door_height() -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{FloorPlan, WorldError};
+    use proptest::prelude::*;
+
+    use super::{Door, FloorPlan, Furniture, Room, WorldError};
+    use crate::world::World;
 
     const DEN: &str = "name='den'\n[start]\nposition=[1.0,1.0]\n[[rooms]]\nname='den'\nmin=[0.0,0.0]\nmax=[4.0,3.0]\n";
 
@@ -249,6 +252,33 @@ mod tests {
             unknown.parse::<FloorPlan>(),
             Err(WorldError::Syntax { .. })
         ));
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_a_plan_or_an_error(text in "[a-z\\[\\]{}=.,\"0-9 \n-]{0,120}") {
+            let _ = text.parse::<FloorPlan>();
+            let _ = format!("{DEN}{text}").parse::<FloorPlan>();
+        }
+
+        #[test]
+        fn any_numbers_make_a_world_or_an_error(
+            numbers in prop::collection::vec(-5.0..9.0_f64, 14), flip in any::<bool>()
+        ) {
+            let mut plan: FloorPlan = DEN.parse().unwrap();
+            let pair = |i: usize| [numbers[i], numbers[i + 1]];
+            plan.rooms.push(Room { name: "b".into(), min: pair(0), max: pair(2), texture: 1.0 });
+            let center = if flip { [4.0, numbers[4]] } else { pair(4) };
+            plan.doors.push(Door { name: "d".into(), center, width: numbers[6].abs(), height: 2.0 });
+            let triple = |i: usize| [numbers[i], numbers[i + 1], numbers[i + 2]];
+            plan.furniture.push(Furniture { min: triple(8), max: triple(11), texture: 0.1 });
+            plan.start.position = pair(7);
+            if let Ok(world) = World::new(plan, 1) {
+                prop_assert!(world.clearance([world.start().position[0], world.start().position[1], 0.1]) >= 0.0);
+                let reach = world.reachable(1.0, 0.2, 0.15);
+                prop_assert!(reach.cells.iter().all(|&cell| world.clearance(cell) >= 0.15));
+            }
+        }
     }
 
     #[test]
