@@ -1,3 +1,5 @@
+//! Tests of proven free space: carving, evidence, exact motions against their definition, wrong input.
+
 use super::*;
 use crate::vector::{add, distance, lerp};
 use rand::{RngExt, SeedableRng};
@@ -289,14 +291,14 @@ fn wrong_input_is_refused_with_numbers() {
         refused,
         Some(FreeSpaceError::TooManyVoxels { .. })
     ));
-    let unusable = Ray {
-        origin: [1e300; 3],
-        end: [-1e300; 3],
+}
+
+#[test]
+fn settings_out_of_range_are_refused() {
+    let good = Ray {
+        origin: [0.0; 3],
+        end: [1.0; 3],
     };
-    assert!(matches!(
-        build(&[unusable], &NOTHING, config()),
-        Some(FreeSpaceError::TooManyVoxels { .. })
-    ));
     for wrong in [
         FreeSpaceConfig {
             resolution: 0.0,
@@ -331,9 +333,30 @@ fn wrong_input_is_refused_with_numbers() {
             ..config()
         },
     ] {
-        let refused = build(&[good], &NOTHING, wrong);
+        let refused = FreeSpace::from_rays([good], &NOTHING, &wrong).err();
         assert!(matches!(refused, Some(FreeSpaceError::OutOfRange { .. })));
     }
+}
+
+#[test]
+fn a_refused_extension_changes_nothing() {
+    let good = Ray {
+        origin: [0.0; 3],
+        end: [1.0; 3],
+    };
+    let far = Ray {
+        origin: [1e9; 3],
+        end: [0.0; 3],
+    };
+    let unusable = Ray {
+        origin: [1e300; 3],
+        end: [-1e300; 3],
+    };
+    let refused = FreeSpace::from_rays([unusable], &NOTHING, &config()).err();
+    assert!(matches!(
+        refused,
+        Some(FreeSpaceError::TooManyVoxels { .. })
+    ));
     let mut space = FreeSpace::from_rays([good], &NOTHING, &config()).unwrap();
     let before = space.voxel_centers();
     assert!(space.insert([far], &NOTHING).is_err());

@@ -1,3 +1,5 @@
+//! Tests of hulls: every rank, thin and far sets, distances against dense sampling.
+
 use super::*;
 use crate::vector::{Vec3, add, cross, distance, dot, lerp, norm, scale, sub};
 use proptest::prelude::*;

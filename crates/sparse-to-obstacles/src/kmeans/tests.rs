@@ -1,3 +1,5 @@
+//! Tests of K-means: laws, equality of the methods, degenerate and wrong input.
+
 use super::*;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};

@@ -1,3 +1,5 @@
+//! Tests of obstacle sets: queries against brute force, splitting, updates, export.
+
 use super::*;
 use crate::hull::HullKind;
 use crate::vector::{add, distance, lerp};
