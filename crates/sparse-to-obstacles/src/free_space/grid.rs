@@ -2,6 +2,7 @@
 
 use super::error::FreeSpaceError;
 use crate::vector::{Vec3, sub};
+use std::ops::Range;
 
 /// Integer coordinates of a voxel: its low corner divided by the resolution.
 pub(super) type Cell = [i64; 3];
@@ -72,7 +73,7 @@ impl Grid {
 
     #[inline]
     pub(super) fn cell_of(&self, point: Vec3) -> Cell {
-        point.map(|c| (c / self.resolution).floor() as i64)
+        point.map(|c| floor(c / self.resolution))
     }
 
     #[inline]
@@ -122,6 +123,25 @@ impl Grid {
         squared
     }
 
+    /// The cells of the grid around a segment, as far as this away along the axes.
+    #[inline]
+    pub(super) fn around(&self, a: Vec3, b: Vec3, reach: f64) -> CellBox {
+        let mut low = self.cell_of(crate::vector::min(a, b).map(|c| c - reach));
+        let mut high = self.cell_of(crate::vector::max(a, b).map(|c| c + reach));
+        let mut is_clipped = false;
+        for axis in 0..3 {
+            let (first, last) = (self.low[axis], self.low[axis] + self.size[axis] as i64 - 1);
+            is_clipped |= low[axis] < first || high[axis] > last;
+            low[axis] = low[axis].max(first);
+            high[axis] = high[axis].min(last);
+        }
+        CellBox {
+            low,
+            high,
+            is_clipped,
+        }
+    }
+
     /// Calls `visit` with the index of every cell of the grid whose cube the ball touches.
     pub(super) fn for_each_touched(&self, centre: Vec3, radius: f64, mut visit: impl FnMut(usize)) {
         let low = self.cell_of(centre.map(|c| c - radius));
@@ -140,4 +160,34 @@ impl Grid {
             }
         }
     }
+}
+
+/// A box of cells inside the grid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CellBox {
+    low: Cell,
+    high: Cell,
+    /// Was a part of it outside the grid?
+    pub(super) is_clipped: bool,
+}
+
+impl CellBox {
+    /// The rows along z: the first cell of each, and the indices of all its cells.
+    pub(super) fn rows(self, grid: &Grid) -> impl Iterator<Item = (Cell, Range<usize>)> {
+        let length = (self.high[2] - self.low[2] + 1).max(0) as usize;
+        (self.low[0]..=self.high[0]).flat_map(move |x| {
+            (self.low[1]..=self.high[1]).filter_map(move |y| {
+                let cell = [x, y, self.low[2]];
+                let start = grid.index(cell)?;
+                (length > 0).then_some((cell, start..start + length))
+            })
+        })
+    }
+}
+
+/// The largest integer not above `value`; saturates. Without a call, unlike the standard one.
+#[inline]
+fn floor(value: f64) -> i64 {
+    let towards_zero = value as i64;
+    towards_zero.saturating_sub(i64::from(towards_zero as f64 > value))
 }

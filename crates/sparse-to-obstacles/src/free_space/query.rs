@@ -124,12 +124,16 @@ impl FreeSpace {
 
     /// Exact: is every voxel that the ball touches on this piece free?
     fn voxels_are_free(&self, a: Vec3, b: Vec3, radius: f64) -> bool {
-        !self.any_cell_near(a, b, radius, |cell| {
-            let Some(index) = self.grid.index(cell) else {
-                return true;
-            };
-            !self.free[index] && self.touches_cube(cell, a, b, radius)
-        })
+        let around = self.grid.around(a, b, radius);
+        // Nothing beyond the grid is free.
+        !around.is_clipped
+            && around.rows(&self.grid).all(|(cell, indices)| {
+                let row = &self.free[indices];
+                row.iter().all(|&free| free)
+                    || row.iter().zip(cell[2]..).all(|(&free, z)| {
+                        free || !self.touches_cube([cell[0], cell[1], z], a, b, radius)
+                    })
+            })
     }
 
     fn touches_cube(&self, cell: [i64; 3], a: Vec3, b: Vec3, radius: f64) -> bool {
@@ -153,41 +157,13 @@ impl FreeSpace {
 
     /// Exact: does the piece keep its distance from all surface points?
     fn points_are_away(&self, a: Vec3, b: Vec3, clearance: f64) -> bool {
-        !self.any_cell_near(a, b, clearance, |cell| {
-            let Some(index) = self.grid.index(cell) else {
-                return false;
-            };
-            let points = self.surface.in_voxel(index);
+        let around = self.grid.around(a, b, clearance);
+        around.rows(&self.grid).all(|(_, indices)| {
+            let points = self.surface.in_voxels(indices);
             points
                 .iter()
-                .any(|&(_, point)| distance_to_segment(point, a, b) < clearance)
+                .all(|&(_, point)| distance_to_segment(point, a, b) >= clearance)
         })
-    }
-
-    /// Calls `test` for the cells around a piece until it holds for one.
-    fn any_cell_near(
-        &self,
-        a: Vec3,
-        b: Vec3,
-        radius: f64,
-        mut test: impl FnMut([i64; 3]) -> bool,
-    ) -> bool {
-        let low = self
-            .grid
-            .cell_of(crate::vector::min(a, b).map(|c| c - radius));
-        let high = self
-            .grid
-            .cell_of(crate::vector::max(a, b).map(|c| c + radius));
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
-                    if test([x, y, z]) {
-                        return true;
-                    }
-                }
-            }
-        }
-        false
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::grid::Grid;
 use crate::vector::Vec3;
+use std::ops::Range;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surface {
@@ -42,8 +43,9 @@ impl Surface {
         self.starts[voxel] < self.starts[voxel + 1]
     }
 
+    /// The points in a range of voxels.
     #[inline]
-    pub(super) fn in_voxel(&self, voxel: usize) -> &[(u32, Vec3)] {
-        &self.by_voxel[self.starts[voxel] as usize..self.starts[voxel + 1] as usize]
+    pub(super) fn in_voxels(&self, voxels: Range<usize>) -> &[(u32, Vec3)] {
+        &self.by_voxel[self.starts[voxels.start] as usize..self.starts[voxels.end] as usize]
     }
 }

@@ -380,3 +380,31 @@ fn no_rays_prove_nothing() {
     let space = FreeSpace::from_rays([point], &NOTHING, &config()).unwrap();
     assert_eq!(space.voxel_count(), 0);
 }
+
+#[test]
+fn enormous_balls_are_refused_at_once() {
+    let (rays, points) = scan(4, 200);
+    let space = FreeSpace::from_rays(rays, &points, &FreeSpaceConfig::default()).unwrap();
+    for radius in [3.0, 1e9, 1e300] {
+        assert!(!space.motion_is_free([1.0, 1.0, 1.2], [1.6, 1.4, 1.2], radius));
+    }
+}
+
+#[test]
+fn balls_beyond_the_reach_of_the_distance_field_are_exact() {
+    // A block of free space 2 m wide at a fine resolution: 50 voxels.
+    let mut space = FreeSpace::from_rays(
+        [],
+        &NOTHING,
+        &FreeSpaceConfig {
+            resolution: 0.04,
+            ..config()
+        },
+    )
+    .unwrap();
+    let line: Vec<Vec3> = (0..=20).map(|i| [0.1 * f64::from(i), 0.02, 0.02]).collect();
+    space.add_balls(&line, 1.0).unwrap();
+    assert!(space.motion_is_free([0.0, 0.02, 0.02], [2.0, 0.02, 0.02], 0.9));
+    assert!(!space.motion_is_free([0.0, 0.02, 0.02], [2.0, 0.02, 0.02], 1.1));
+    assert!(!space.motion_is_free([0.0, 0.02, 0.02], [2.3, 0.02, 0.02], 0.9));
+}
