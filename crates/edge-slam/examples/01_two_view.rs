@@ -16,7 +16,10 @@ use rand_pcg::Pcg64;
 fn main() -> Result<(), Box<dyn Error>> {
     let camera = PinholeCamera::new(500.0, 500.0, 320.0, 240.0)?;
     let turn = Vector3::new(0.02, -0.1, 0.01);
-    for (name, travel) in [("moved", Vector3::new(0.4, 0.0, 0.1)), ("turned", Vector3::zeros())] {
+    for (name, travel) in [
+        ("moved", Vector3::new(0.4, 0.0, 0.1)),
+        ("turned", Vector3::zeros()),
+    ] {
         let motion = Isometry3::new(travel, turn);
         let (first, second) = matches(&camera, &motion);
         let rng = &mut Pcg64::seed_from_u64(1);
@@ -46,7 +49,11 @@ fn matches(
         let (a, b) = (camera.project(&point), camera.project(&(motion * point)));
         if let (Some(a), Some(b)) = (a, b) {
             let wrong = pairs.0.len() % 4 == 0;
-            let b = if wrong { Point2::new(640.0 * unit(), 480.0 * unit()) } else { b };
+            let b = if wrong {
+                Point2::new(640.0 * unit(), 480.0 * unit())
+            } else {
+                b
+            };
             pairs.0.push(a);
             pairs.1.push(b);
         }

@@ -18,10 +18,19 @@ fn main() -> Result<(), FusionError> {
             let velocity = Vector3::new(0.5, 0.2 * (0.5 * time).sin(), 0.0);
             truth += velocity * 0.1;
             let battery = 0.9 - time / 100.0;
-            ekf.predict(&FlightSample { time, velocity: velocity * 1.1, battery })?;
+            ekf.predict(&FlightSample {
+                time,
+                velocity: velocity * 1.1,
+                battery,
+            })?;
             if with_camera && step % 10 == 0 {
                 let attitude = Vector3::zeros();
-                let pose = VisualPose { position: truth, attitude, distance: 0.5, inliers: 120 };
+                let pose = VisualPose {
+                    position: truth,
+                    attitude,
+                    distance: 0.5,
+                    inliers: 120,
+                };
                 ekf.update_visual(&pose)?;
             }
         }

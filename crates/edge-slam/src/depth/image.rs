@@ -26,6 +26,12 @@ pub enum DepthError {
         /// What is allowed.
         range: &'static str,
     },
+    /// A depth network failed.
+    #[error("the depth network failed while {step}")]
+    Network {
+        /// At what.
+        step: &'static str,
+    },
     /// Too few good pairs to fit a scale.
     #[error("{pairs} pixels have both depths, at least {needed} are needed")]
     TooFewPairs {

@@ -24,7 +24,7 @@ use crate::camera::Camera;
 use crate::depth::DepthImage;
 use crate::feature::{Match, OrbExtractor, match_descriptors};
 use crate::pnp::{PnpPose, refine_pose};
-use crate::two_view::estimate_two_view;
+use crate::two_view::{TwoView, estimate_two_view};
 
 /// What became of a frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,7 +152,7 @@ impl Odometry {
         let (first, second, index) = keyframe.pixel_pairs(sight, matches);
         let camera = &self.camera.pinhole;
         let found = estimate_two_view(&first, &second, camera, &self.config.two_view, rng);
-        let Some(found) = found.ok().filter(|found| found.is_confident()) else {
+        let Some(found) = found.ok().filter(TwoView::is_confident) else {
             return;
         };
         let good = |&(_, point): &(usize, Point3<f64>)| point.z > 0.0;
