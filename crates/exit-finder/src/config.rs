@@ -157,7 +157,7 @@ impl Default for RangeAware {
             min_relative_width: 0.15,
             max_relative_width: 1.0,
             min_expected: 8.0,
-            min_evenness: 0.7,
+            min_evenness: 0.85,
             unseen: FRAC_PI_2,
             beyond: 0.2,
         }

@@ -1,4 +1,9 @@
 //! Equivariance, invariance and degenerate inputs.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by panicking"
+)]
 
 mod walls;
 
@@ -61,9 +66,8 @@ proptest! {
             prop_assert_eq!(first.exits.len(), second.exits.len());
             for (a, b) in first.exits.iter().zip(&second.exits) {
                 let expected = moved(a.position, bins, scale, shift);
-                for i in 0..3 {
-                    prop_assert!((expected[i] - b.position[i]).abs() < 1e-6 * scale * 10.0);
-                }
+                let off = (0..3).map(|i| (expected[i] - b.position[i]).abs()).fold(0.0, f64::max);
+                prop_assert!(off < 1e-5 * scale);
                 prop_assert!((a.width * scale - b.width).abs() < 1e-6 * scale);
                 prop_assert!((a.score - b.score).abs() < 1e-6);
             }

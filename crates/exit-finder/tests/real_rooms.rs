@@ -1,4 +1,9 @@
 //! The real room scans: the labelled openings are found, and unseen sectors are not sold as exits.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by panicking"
+)]
 
 mod real;
 

@@ -4,9 +4,12 @@
 //! close into a circle.
 
 mod binning;
+mod live;
 mod statistics;
 mod strip;
 
+pub(crate) use binning::Eye;
+pub use live::LiveProfile;
 pub use statistics::BinStats;
 pub(crate) use statistics::median;
 pub use strip::Strip;

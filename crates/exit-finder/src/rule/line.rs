@@ -5,14 +5,14 @@
 
 /// A straight wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Line {
+pub(crate) struct Line {
     a: f64,
     b: f64,
 }
 
 impl Line {
     /// The line through two points in plan; `None` when they and the agent are in line.
-    pub(super) fn through(p: [f64; 2], q: [f64; 2]) -> Option<Self> {
+    pub(crate) fn through(p: [f64; 2], q: [f64; 2]) -> Option<Self> {
         let area = p[0] * q[1] - p[1] * q[0];
         let size = p[0].hypot(p[1]) * q[0].hypot(q[1]);
         (area.abs() > 1e-9 * size).then(|| Self {
@@ -22,12 +22,12 @@ impl Line {
     }
 
     /// Inverse range in a direction; zero or less where the line is never met.
-    pub(super) fn inverse_range(&self, direction: [f64; 2]) -> f64 {
+    pub(crate) fn inverse_range(&self, direction: [f64; 2]) -> f64 {
         self.a * direction[0] + self.b * direction[1]
     }
 
     /// Distance of a point from the line, positive on the side away from the agent.
-    pub(super) fn distance_behind(&self, p: [f64; 2]) -> f64 {
+    pub(crate) fn distance_behind(&self, p: [f64; 2]) -> f64 {
         (self.inverse_range(p) - 1.0) / self.a.hypot(self.b)
     }
 }

@@ -2,6 +2,7 @@
 
 mod contour;
 mod line;
+pub(crate) use line::Line;
 mod matched;
 mod paper;
 mod range_aware;

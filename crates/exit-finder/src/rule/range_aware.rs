@@ -108,10 +108,13 @@ impl<'a> Scene<'a> {
         let empty: Vec<bool> = (0..self.n())
             .map(|bin| self.contour.ranges[bin].is_none() && !self.unseen[bin])
             .collect();
-        let runs = circular_runs(&empty)
+        let runs: Vec<Run> = circular_runs(&empty)
             .into_iter()
-            .map(|run| self.widened(run));
-        runs.map(|run| (run, self.judge_gap(run))).collect()
+            .map(|run| self.widened(run))
+            .collect();
+        runs.iter()
+            .map(|&run| (run, self.judge_gap(run, &runs)))
+            .collect()
     }
 
     /// Takes back what the smoothing window took from an empty run on either side.
@@ -129,8 +132,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn judge_gap(&self, run: Run) -> Result<Exit, Rejection> {
-        let (expected, mean) = points_elsewhere(self.profile, run);
+    fn judge_gap(&self, run: Run, gaps: &[Run]) -> Result<Exit, Rejection> {
+        let (expected, mean) = points_elsewhere(self.profile, run, gaps);
         let needed = self.rule.min_expected.max(self.rule.min_evenness * mean);
         if expected < needed {
             return Err(Rejection::Unsupported { expected, needed });

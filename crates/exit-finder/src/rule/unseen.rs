@@ -31,18 +31,19 @@ pub(super) fn unseen_bins(
     (0..n).map(|bin| empty[bin] && !seen(bin)).collect()
 }
 
-/// Points that a run of this length holds elsewhere: in the poorest tenth of the runs that do not
-/// overlap it, and on average.
-pub(super) fn points_elsewhere(profile: &RangeProfile, run: Run) -> (f64, f64) {
+/// Points that a run of this length holds elsewhere: in the poorest tenth of such runs, and on average.
+///
+/// Runs that touch a gap at least half as long are left out: other doors say nothing about walls.
+pub(super) fn points_elsewhere(profile: &RangeProfile, run: Run, gaps: &[Run]) -> (f64, f64) {
     let n = profile.bins.len();
-    let elsewhere = (run.start + run.len)..=(run.start + n).saturating_sub(run.len);
-    let mut counts: Vec<usize> = elsewhere
-        .map(|start| {
-            Run { start, ..run }
-                .bins(n)
-                .map(|bin| profile.bins[bin].count)
-                .sum()
-        })
+    let mut blocked = vec![false; n];
+    for gap in gaps.iter().filter(|gap| 2 * gap.len >= run.len) {
+        gap.bins(n).for_each(|bin| blocked[bin] = true);
+    }
+    let mut counts: Vec<usize> = (0..n)
+        .map(|start| Run { start, ..run })
+        .filter(|other| other.bins(n).all(|bin| !blocked[bin]))
+        .map(|other| other.bins(n).map(|bin| profile.bins[bin].count).sum())
         .collect();
     counts.sort_unstable();
     let mean = counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64;

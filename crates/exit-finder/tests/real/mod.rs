@@ -2,6 +2,8 @@
 #![allow(
     dead_code,
     unreachable_pub,
+    clippy::unwrap_used,
+    clippy::print_stdout,
     reason = "shared by tests and examples, each uses its part"
 )]
 
