@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Clients that were not written here fly the emulated drone. Installs them into a temporary folder.
-# Needs Rust, python3 with venv, and npm; a client whose installer is missing is skipped with a line that says so.
+# Needs Rust, a C++ compiler, python3 with venv, and npm; a client whose installer is missing is skipped with a line that says so.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 cd "$here/../.."
@@ -11,7 +11,7 @@ emulator=""
 cleanup() { [ -z "$emulator" ] || kill "$emulator" 2>/dev/null || true; rm -rf "$work"; }
 trap cleanup EXIT
 
-cargo build --quiet -p tello-sdk --example emulator
+cargo build --quiet -p tello-sdk --features video --example emulator
 binary="${CARGO_TARGET_DIR:-target}/debug/examples/emulator"
 
 # fly NAME PROTOCOL TIMING COMMAND...: a fresh drone, the client with a time limit.
@@ -35,7 +35,7 @@ fly() {
 
 if python3 -m venv "$work/venv" 2>/dev/null; then
     "$work/venv/bin/pip" install --quiet djitellopy==2.5.0 easytello==0.0.7 tello-asyncio==2.1.3 tellopy==0.7.0
-    for client in djitellopy easytello tello_asyncio; do
+    for client in djitellopy djitellopy_video easytello tello_asyncio; do
         fly "$client" 2.0 fast "$work/venv/bin/python" "$here/fly_$client.py" "$address" "$port"
     done
     fly tellopy binary real "$work/venv/bin/python" "$here/fly_tellopy.py" "$address" "$port"
@@ -44,8 +44,8 @@ if python3 -m venv "$work/venv" 2>/dev/null; then
     fly tellopy-fake-drone binary real "$work/venv/bin/python" "$here/serve_tellopy_fake.py" \
         "$(dirname "$binary")/04_binary_flight"
 else
-    skipped=$((skipped + 5))
-    echo "python3 venv is not available: five checks skipped"
+    skipped=$((skipped + 6))
+    echo "python3 venv is not available: six checks skipped"
 fi
 if command -v npm >/dev/null; then
     npm install --silent --no-fund --no-audit --prefix "$work" tello-drone@3.0.4

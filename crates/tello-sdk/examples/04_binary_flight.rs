@@ -1,7 +1,7 @@
 //! Takes off, turns and lands in the binary protocol of the maker's app.
 //!
 //! Input: `--drone ADDRESS:PORT` for a real drone (192.168.10.1:8889) or another program's; without it an emulated drone on
-//! 127.0.0.3 is started in this process. Output: how each command ended, then the last attitude and battery.
+//! 127.0.0.3 is started in this process. Output: how each command ended, then the last battery.
 
 #![allow(clippy::print_stdout)]
 
@@ -14,25 +14,20 @@ use tello_sdk::emulator::udp::{ServeConfig, serve};
 use tello_sdk::{Stick, Sticks};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1);
-    if arguments.next().as_deref() == Some("--drone") {
-        return fly(arguments
-            .next()
-            .ok_or("--drone needs an address")?
-            .parse()?);
+    if let Some(address) = std::env::args().skip_while(|word| word != "--drone").nth(1) {
+        return fly(address.parse()?);
     }
+    let address = [127, 0, 0, 3].into();
     let emulator = ServeConfig {
-        address: [127, 0, 0, 3].into(),
+        address,
         binary: true,
         ..ServeConfig::default()
     };
-    let address = SocketAddr::from((emulator.address, emulator.command_port));
     let stop = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        let server = scope.spawn(|| serve(&emulator, &stop));
-        let flown = fly(address);
+        scope.spawn(|| serve(&emulator, &stop));
+        let flown = fly(SocketAddr::from((address, emulator.command_port)));
         stop.store(true, Ordering::Relaxed);
-        server.join().map_err(|_| "the emulator panicked")??;
         flown
     })
 }
@@ -40,18 +35,18 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn fly(drone: SocketAddr) -> Result<(), Box<dyn Error>> {
     let socket = UdpSocket::bind("0.0.0.0:0")?;
     let mut session = BinarySession::new(BinaryConfig::default());
-    let start = Instant::now();
-    let mut buffer = [0; 2048];
-    let mut land_at = None;
+    let (start, mut buffer, mut took_off) = (Instant::now(), [0; 2048], None);
     loop {
+        let now = start.elapsed();
         let wait = match session.poll_output() {
+            BinaryOutput::WaitUntil(at) => at.saturating_sub(now),
             BinaryOutput::Send(bytes) => {
                 socket.send_to(&bytes, drone)?;
                 continue;
             }
-            BinaryOutput::Event(BinaryEvent::Connected) if land_at.is_none() => {
-                session.command(start.elapsed(), BinaryCommand::TakeOff);
-                land_at = Some(start.elapsed() + Duration::from_secs(6));
+            BinaryOutput::Event(BinaryEvent::Connected) if took_off.is_none() => {
+                session.command(now, BinaryCommand::TakeOff);
+                took_off = Some(now);
                 continue;
             }
             BinaryOutput::Event(BinaryEvent::Finished {
@@ -64,38 +59,31 @@ fn fly(drone: SocketAddr) -> Result<(), Box<dyn Error>> {
                 continue;
             }
             BinaryOutput::Event(_) => continue,
-            BinaryOutput::WaitUntil(at) => at.saturating_sub(start.elapsed()),
         };
-        socket.set_read_timeout(Some(
-            wait.clamp(Duration::from_millis(1), Duration::from_secs(1)),
-        ))?;
+        socket.set_read_timeout(Some(wait.max(Duration::from_millis(1))))?;
         match socket.recv_from(&mut buffer) {
-            Ok((length, from)) if from.ip() == drone.ip() => {
-                session.handle_datagram(start.elapsed(), &buffer[..length]);
-            }
-            _ => session.handle_timeout(start.elapsed()),
+            Ok((length, _)) => session.handle_datagram(start.elapsed(), &buffer[..length]),
+            Err(_) => session.handle_timeout(start.elapsed()),
         }
-        if land_at.is_some_and(|at| at <= start.elapsed()) {
-            session.command(start.elapsed(), BinaryCommand::Land);
-            land_at = Some(Duration::MAX);
-        } else if land_at.is_some_and(|at| at <= start.elapsed() + Duration::from_secs(2)) {
-            session.set_sticks(
-                start.elapsed(),
+        match took_off.map(|at| now.saturating_sub(at).as_secs()) {
+            Some(4 | 5) => session.set_sticks(
+                now,
                 Sticks {
                     yaw: Stick::MAX,
                     ..Sticks::CENTER
                 },
-            );
+            ),
+            Some(6) => {
+                session.command(now, BinaryCommand::Land);
+                took_off = Some(Duration::MAX);
+            }
+            _ => {}
         }
     }
-    let telemetry = session.telemetry();
-    println!(
-        "attitude {:?}",
-        telemetry.attitude.map(|reading| reading.value)
-    );
+    let battery = session.telemetry().battery;
     println!(
         "battery {:?}",
-        telemetry.battery.map(|reading| reading.value.percent())
+        battery.map(|reading| reading.value.percent())
     );
     Ok(())
 }

@@ -1,4 +1,6 @@
-//! Emulated drones on UDP until interrupted: `emulator [ADDRESS] [COMMAND_PORT] [COUNT] [1.3|2.0|3.0|binary] [ideal|wifi|lossy] [fast]`
+//! Emulated drones on UDP until interrupted: `emulator [ADDRESS] [COMMAND_PORT] [COUNT] [1.3|2.0|3.0|binary] [ideal|wifi|lossy] [real|fast]`
+//!
+//! With the feature `video` the drones have a camera that sends real H.264.
 //!
 //! Input: the arguments, by default `127.0.0.2 18889 1 2.0 ideal`. Output: a line with the first address, then nothing.
 
@@ -7,8 +9,8 @@
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
 use tello_sdk::SdkVersion;
-use tello_sdk::emulator::udp::{ServeConfig, serve};
-use tello_sdk::emulator::{Faults, Timing};
+use tello_sdk::emulator::udp::{ServeConfig, serve_with_cameras};
+use tello_sdk::emulator::{Faults, Timing, VideoSource};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -46,6 +48,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         "serving {} drone(s) from {}:{}",
         config.count, config.address, config.command_port
     );
-    serve(&config, &AtomicBool::new(false))?;
+    serve_with_cameras(&config, &camera, &AtomicBool::new(false))?;
     Ok(())
+}
+
+#[cfg(feature = "video")]
+fn camera(_drone: u8) -> Option<Box<dyn VideoSource>> {
+    let camera = tello_sdk::video::TestPattern::new().ok()?;
+    Some(Box::new(camera))
+}
+
+#[cfg(not(feature = "video"))]
+fn camera(_drone: u8) -> Option<Box<dyn VideoSource>> {
+    None
 }

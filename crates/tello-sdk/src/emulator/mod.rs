@@ -96,6 +96,7 @@ pub struct Emulator<P> {
     client: Option<SocketAddr>,
     running: Option<Running>,
     stepped: Duration,
+    target: Duration,
     next_state: Duration,
     next_video: Option<Duration>,
     video: Option<Box<dyn VideoSource>>,
@@ -136,6 +137,7 @@ impl<P: Physics> Emulator<P> {
             client: None,
             running: None,
             stepped: Duration::ZERO,
+            target: Duration::ZERO,
             next_state: Duration::ZERO,
             next_video: None,
             video: None,
@@ -236,6 +238,7 @@ impl<P: Physics> Emulator<P> {
 
     /// Lets everything up to `now` happen in the order of time.
     fn run_to(&mut self, now: Duration) {
+        self.target = self.target.max(now);
         while self.next_event() <= now {
             let at = self.next_event();
             self.step_to(at);

@@ -54,7 +54,10 @@ impl<P: Physics> Emulator<P> {
             return;
         };
         let to = SocketAddr::new(client.ip(), self.config.video_port);
-        self.next_video = Some(at + source.period().max(Duration::from_millis(1)));
+        let period = source.period().max(Duration::from_millis(1));
+        // A camera that is slower than its period skips pictures instead of falling behind for ever.
+        let late = at + period * 2 < self.target;
+        self.next_video = Some(if late { self.target } else { at } + period);
         let Some(unit) = source.next_unit(at) else {
             return;
         };
