@@ -17,7 +17,7 @@ fn the_check_vector_is_met() {
         println!("skipped: {} is not there", path.display());
         return;
     };
-    let network = OnnxDepth::new(bytes).unwrap();
+    let network = OnnxDepth::new(&bytes).unwrap();
     let value = |index: usize| {
         let (c, y, x) = (index / (224 * 224), index / 224 % 224, index % 224);
         let (c, y, x) = (c as f32, y as f32, x as f32);

@@ -3,6 +3,8 @@
 mod image;
 #[cfg(feature = "depth-onnx")]
 mod onnx;
+#[cfg(feature = "depth-onnx")]
+mod onnx_names;
 mod scale;
 mod source;
 

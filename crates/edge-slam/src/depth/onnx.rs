@@ -9,6 +9,7 @@ use rten::Model;
 use rten_tensor::NdTensor;
 use rten_tensor::prelude::*;
 
+use super::onnx_names::without_operator_names;
 use super::{DepthError, DepthImage, DepthSource};
 use crate::Frame;
 
@@ -31,10 +32,12 @@ impl OnnxDepth {
     ///
     /// # Errors
     /// [`DepthError::Network`] when the bytes are no ONNX model or use unknown operators.
-    pub fn new(bytes: Vec<u8>) -> Result<Self, DepthError> {
-        let model = Model::load(bytes).map_err(|_| DepthError::Network {
+    pub fn new(bytes: &[u8]) -> Result<Self, DepthError> {
+        let failed = DepthError::Network {
             step: "loading the file",
-        })?;
+        };
+        let bytes = without_operator_names(bytes).ok_or(failed)?;
+        let model = Model::load(bytes).map_err(|_| failed)?;
         Ok(Self { model })
     }
 
@@ -165,9 +168,9 @@ mod tests {
     #[test]
     fn bytes_that_are_no_model_are_refused() {
         assert!(matches!(
-            OnnxDepth::new(vec![1, 2, 3]),
+            OnnxDepth::new(&[1, 2, 3]),
             Err(DepthError::Network { .. })
         ));
-        assert!(OnnxDepth::new(Vec::new()).is_err());
+        assert!(OnnxDepth::new(&[]).is_err());
     }
 }
