@@ -39,8 +39,15 @@ fn complaint(arguments: &[&str]) -> String {
     let line = String::from_utf8(output.stderr).expect("text");
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {line}");
     assert!(output.stdout.is_empty(), "{arguments:?} printed a result");
-    assert_eq!(line.trim_end().lines().count(), 1, "more than one line: {line}");
-    assert!(line.starts_with("explorer: ") && line.contains("; "), "no advice: {line}");
+    assert_eq!(
+        line.trim_end().lines().count(),
+        1,
+        "more than one line: {line}"
+    );
+    assert!(
+        line.starts_with("explorer: ") && line.contains("; "),
+        "no advice: {line}"
+    );
     line
 }
 
@@ -85,12 +92,31 @@ fn room() -> String {
     text
 }
 
-const CLEAN: [&str; 6] =
-    ["points", "kept", "removed_indices", "seconds", "iterations", "certificate"];
-const OBSTACLES: [&str; 6] =
-    ["obstacles", "degenerate", "inertia", "proven_free_voxels", "resolution", "seconds"];
-const PLAN: [&str; 7] =
-    ["status", "path", "length", "raw_length", "checks", "seconds", "min_clearance"];
+const CLEAN: [&str; 6] = [
+    "points",
+    "kept",
+    "removed_indices",
+    "seconds",
+    "iterations",
+    "certificate",
+];
+const OBSTACLES: [&str; 6] = [
+    "obstacles",
+    "degenerate",
+    "inertia",
+    "proven_free_voxels",
+    "resolution",
+    "seconds",
+];
+const PLAN: [&str; 7] = [
+    "status",
+    "path",
+    "length",
+    "raw_length",
+    "checks",
+    "seconds",
+    "min_clearance",
+];
 
 #[test]
 fn clean_keeps_and_writes_what_it_says() {
@@ -104,12 +130,20 @@ fn clean_keeps_and_writes_what_it_says() {
         let (points, kept_count) = (report["points"].as_u64(), report["kept"].as_u64());
         assert_eq!(points, kept_count.map(|kept| kept + removed), "{method}");
         let again = json(&["clean", &kept, "--method", "paper", "--json"]);
-        assert_eq!(again["points"].as_u64(), kept_count, "{method}: the file holds what was kept");
+        assert_eq!(
+            again["points"].as_u64(),
+            kept_count,
+            "{method}: the file holds what was kept"
+        );
     }
     let report = json(&["clean", &input, "--json", "--repeat", "3"]);
     let last = report["points"].as_u64().map(|points| points - 1);
-    let removed: Vec<Option<u64>> =
-        report["removed_indices"].as_array().expect("a list").iter().map(Value::as_u64).collect();
+    let removed: Vec<Option<u64>> = report["removed_indices"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(Value::as_u64)
+        .collect();
     assert!(removed.contains(&last), "the point far away stays");
 }
 
@@ -117,10 +151,22 @@ fn clean_keeps_and_writes_what_it_says() {
 fn exits_finds_the_door() {
     let folder = folder("exits");
     let input = file(&folder, "room.csv", &room());
-    let report =
-        json(&["exits", &input, "--position", "0,0,1", "--up", "0,0,1", "--scale", "1", "--json"]);
+    let report = json(&[
+        "exits",
+        &input,
+        "--position",
+        "0,0,1",
+        "--up",
+        "0,0,1",
+        "--scale",
+        "1",
+        "--json",
+    ]);
     let best = &report["exits"][0];
-    assert_keys(best, &["direction", "position", "width_rad", "range", "score"]);
+    assert_keys(
+        best,
+        &["direction", "position", "width_rad", "range", "score"],
+    );
     let x = best["direction"][0].as_f64().expect("a number");
     assert!(x > 0.95, "the door lies at +x: {best}");
 }
@@ -130,22 +176,52 @@ fn obstacles_and_a_path_between_them() {
     let folder = folder("obstacles");
     let input = file(&folder, "room.csv", &room());
     let hulls = folder.join("hulls.obj").display().to_string();
-    let report = json(&["obstacles", &input, "--clusters", "80", "-o", &hulls, "--json"]);
+    let report = json(&[
+        "obstacles",
+        &input,
+        "--clusters",
+        "80",
+        "-o",
+        &hulls,
+        "--json",
+    ]);
     assert_keys(&report, &OBSTACLES);
     assert_eq!(report["obstacles"].as_u64(), Some(80));
     assert!(fs::read_to_string(&hulls).expect("a mesh").contains("\nv "));
     for planner in ["rrt", "rrt-connect", "rrt-star", "informed-rrt-star"] {
         let report = json(&[
-            "plan", &input, "--from", "-2,0,1", "--to", "4.5,0.5,1", "--radius", "0.15", "--scale", "1",
-            "--planner", planner, "--json",
+            "plan",
+            &input,
+            "--from",
+            "-2,0,1",
+            "--to",
+            "4.5,0.5,1",
+            "--radius",
+            "0.15",
+            "--scale",
+            "1",
+            "--planner",
+            planner,
+            "--json",
         ]);
         assert_keys(&report, &PLAN);
         assert_eq!(report["status"], "found", "{planner}");
         let (length, raw) = (report["length"].as_f64(), report["raw_length"].as_f64());
-        assert!(length <= raw && length > Some(6.4), "{planner}: {length:?} of {raw:?}");
+        assert!(
+            length <= raw && length > Some(6.4),
+            "{planner}: {length:?} of {raw:?}"
+        );
     }
     let line = complaint(&[
-        "plan", &input, "--from", "-2,0,1", "--to", "4.5,0,1", "--space", "proven-free", "--json",
+        "plan",
+        &input,
+        "--from",
+        "-2,0,1",
+        "--to",
+        "4.5,0,1",
+        "--space",
+        "proven-free",
+        "--json",
     ]);
     assert!(line.contains("no observations"), "{line}");
 }
@@ -156,12 +232,23 @@ fn map_gives_the_union_and_a_picture() {
     let input = file(&folder, "room.csv", &room());
     for (name, begins) in [("map.svg", b"<svg" as &[u8]), ("map.png", b"\x89PNG")] {
         let picture = folder.join(name).display().to_string();
-        let report = json(&["map", &input, "--position", "0,0,1", "--plot", &picture, "--json"]);
+        let report = json(&[
+            "map",
+            &input,
+            "--position",
+            "0,0,1",
+            "--plot",
+            &picture,
+            "--json",
+        ]);
         assert_keys(&report, &CLEAN);
         assert_keys(&report, &OBSTACLES);
         assert_keys(&report, &PLAN);
         assert_keys(&report, &["exits"]);
-        assert!(fs::read(&picture).expect("a picture").starts_with(begins), "{name}");
+        assert!(
+            fs::read(&picture).expect("a picture").starts_with(begins),
+            "{name}"
+        );
     }
     let line = complaint(&["clean", &input, "--plot", "picture.gif"]);
     assert!(line.contains(".svg or .png"), "{line}");
@@ -172,7 +259,16 @@ fn the_same_seed_gives_the_same_bytes() {
     let folder = folder("seed");
     let input = file(&folder, "room.csv", &room());
     let path = |seed: &str| {
-        let plan = ["plan", &input, "--from", "-2,1.5,1", "--to", "4.5,-0.5,1", "--scale", "1"];
+        let plan = [
+            "plan",
+            &input,
+            "--from",
+            "-2,1.5,1",
+            "--to",
+            "4.5,1.7,1",
+            "--scale",
+            "1",
+        ];
         let report = json(&[&plan[..], &["--seed", seed, "--refine", "none", "--json"]].concat());
         report["path"].clone()
     };
@@ -197,9 +293,18 @@ fn missing_and_empty_files() {
 fn nan_and_letters_are_named_with_their_line() {
     let folder = folder("letters");
     let line = complaint(&["clean", &file(&folder, "nan.csv", "1,2,3\n1,NaN,3\n")]);
-    assert!(line.contains("line 2: the value in column 2 is NaN"), "{line}");
-    let line = complaint(&["map", &file(&folder, "letters.csv", "1,2,3\n4,5,6\n7,eight,9\n")]);
-    assert!(line.contains("line 3: 'eight' in column 2 is not a number"), "{line}");
+    assert!(
+        line.contains("line 2: the value in column 2 is NaN"),
+        "{line}"
+    );
+    let line = complaint(&[
+        "map",
+        &file(&folder, "letters.csv", "1,2,3\n4,5,6\n7,eight,9\n"),
+    ]);
+    assert!(
+        line.contains("line 3: 'eight' in column 2 is not a number"),
+        "{line}"
+    );
 }
 
 #[test]
@@ -208,10 +313,19 @@ fn truncated_and_lying_ply_files() {
     let header = "ply\nformat ascii 1.0\nelement vertex COUNT\nproperty float x\n\
         property float y\nproperty float z\nend_header\n1 2 3\n4 5 6\n";
     for (name, count) in [("truncated.ply", "3"), ("absurd.ply", "999999999999999999")] {
-        let line = complaint(&["clean", &file(&folder, name, &header.replace("COUNT", count))]);
-        assert!(line.contains(&format!("promises {count} vertex rows")), "{line}");
+        let line = complaint(&[
+            "clean",
+            &file(&folder, name, &header.replace("COUNT", count)),
+        ]);
+        assert!(
+            line.contains(&format!("promises {count} vertex rows")),
+            "{line}"
+        );
     }
-    let line = complaint(&["clean", &file(&folder, "less.ply", &header.replace("COUNT", "1"))]);
+    let line = complaint(&[
+        "clean",
+        &file(&folder, "less.ply", &header.replace("COUNT", "1")),
+    ]);
     assert!(line.contains("more data follow (line 9)"), "{line}");
 }
 
@@ -221,13 +335,19 @@ fn positions_far_outside_and_too_many_clusters() {
     let input = file(&folder, "room.csv", &room());
     for command in ["map", "exits"] {
         let line = complaint(&[command, &input, "--position", "900,0,0", "--up", "0,0,1"]);
-        assert!(line.contains("--position 900,0,0 lies") && line.contains("outside the map"), "{line}");
+        assert!(
+            line.contains("--position 900,0,0 lies") && line.contains("outside the map"),
+            "{line}"
+        );
     }
     let line = complaint(&["plan", &input, "--from", "0,0,1", "--to", "0,0,-5e3"]);
     assert!(line.contains("--to 0,0,-5000 lies"), "{line}");
     let few = file(&folder, "few.csv", "0,0,0\n1,0,0\n0,1,0\n");
     let line = complaint(&["obstacles", &few, "--clusters", "4"]);
-    assert!(line.contains("--clusters 4 is more than the map's 3 points"), "{line}");
+    assert!(
+        line.contains("--clusters 4 is more than the map's 3 points"),
+        "{line}"
+    );
     let line = complaint(&["exits", &few, "--position", "0,0,0", "--up", "0,0,1"]);
     assert!(line.contains("3 points"), "{line}");
 }
@@ -241,7 +361,9 @@ fn wrong_usage_is_another_exit_code() {
         &["exits", "map.ply", "--position", "1,2,3", "--up", "0,0,0"],
         &["obstacles", "map.ply", "--clusters", "many"],
         &["clean", "map.ply", "--method", "magic"],
-        &["plan", "map.ply", "--from", "0,0,0", "--to", "1,1,1", "--radius", "-1"],
+        &[
+            "plan", "map.ply", "--from", "0,0,0", "--to", "1,1,1", "--radius", "-1",
+        ],
     ] {
         assert_eq!(explorer(arguments).status.code(), Some(2), "{arguments:?}");
     }
@@ -251,13 +373,18 @@ fn wrong_usage_is_another_exit_code() {
 #[test]
 fn unknown_worlds_are_refused_with_the_known_ones() {
     let line = complaint(&["simulate", "--world", "castle", "--json"]);
-    assert!(line.contains("castle") && line.contains("apartment"), "{line}");
+    assert!(
+        line.contains("castle") && line.contains("apartment"),
+        "{line}"
+    );
 }
 
 /// Where the published maps lie, or `None` with a line that says so.
 fn data() -> Option<PathBuf> {
     let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").into();
-    let root = std::env::var_os("EXPLORER_DATA").map_or(default, PathBuf::from).join("data");
+    let root = std::env::var_os("EXPLORER_DATA")
+        .map_or(default, PathBuf::from)
+        .join("data");
     if root.is_dir() {
         return Some(root);
     }
@@ -272,9 +399,17 @@ fn real_maps_run_to_the_end() {
     for (path, up, points) in [
         ("tello-orbslam-rooms/fares.csv", "0,-1,0", 4_436),
         ("tello-orbslam-rooms/shahar_4.csv", "0,-1,0", 3_406),
-        ("orbslam3-maps/sevenscenes_kitchen_mono_first500", "0,-1,0", 4_460),
+        (
+            "orbslam3-maps/sevenscenes_kitchen_mono_first500",
+            "0,-1,0",
+            4_460,
+        ),
         ("orbslam3-maps/kitti_mono_51frames", "0,-1,0", 1_132),
-        ("orbslam3-maps/euroc_v101_stationary_stereo/map.ply", "0,-1,0", 544),
+        (
+            "orbslam3-maps/euroc_v101_stationary_stereo/map.ply",
+            "0,-1,0",
+            544,
+        ),
         ("synthetic-apartment/apt_10k_o15.ply", "0,0,1", 10_000),
     ] {
         let input = data.join(path).display().to_string();
@@ -282,6 +417,9 @@ fn real_maps_run_to_the_end() {
         let report = json(&["map", &input, "--up", up, "--plot", &picture, "--json"]);
         assert_eq!(report["points"].as_u64(), Some(points), "{path}");
         assert_keys(&report, &PLAN);
-        assert!(fs::metadata(&picture).expect("a picture").len() > 10_000, "{path}");
+        assert!(
+            fs::metadata(&picture).expect("a picture").len() > 10_000,
+            "{path}"
+        );
     }
 }

@@ -33,7 +33,10 @@ impl StageMs {
             let stage = |stage: &Stage| Some((stage.word(), percentile(times.of(*stage), share)?));
             Stage::ALL.iter().filter_map(stage).collect()
         };
-        Self { median: shares(0.5), p95: shares(0.95) }
+        Self {
+            median: shares(0.5),
+            p95: shares(0.95),
+        }
     }
 }
 
@@ -54,7 +57,10 @@ pub(crate) fn fly(
         let log = flight.mission().record().log;
         if let Some(logged) = log.get(told..).and_then(<[_]>::last) {
             let seconds = logged.time.as_secs_f64();
-            progress.step(format!("{world}, seed {seed}: {seconds:5.0} s  {}", logged.event));
+            progress.step(format!(
+                "{world}, seed {seed}: {seconds:5.0} s  {}",
+                logged.event
+            ));
             told = log.len();
         }
     }
@@ -70,7 +76,9 @@ pub(crate) fn fly(
 /// One line about a mission.
 pub(crate) fn text(report: &RunReport) -> String {
     let summary = &report.summary;
-    let clearance = summary.min_clearance.map_or("-".to_owned(), |c| format!("{c:.2} m"));
+    let clearance = summary
+        .min_clearance
+        .map_or("-".to_owned(), |c| format!("{c:.2} m"));
     format!(
         "{} seed {}: {}, {:.0} % covered, {:.1} m flown in {:.0} s, {} scans, {} collisions, least clearance \
          {clearance}",

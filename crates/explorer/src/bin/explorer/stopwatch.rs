@@ -12,7 +12,10 @@ pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (result, begin.elapsed().as_secs_f64())
 }
 
-#[expect(clippy::disallowed_methods, reason = "the command reports how long its work takes")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the command reports how long its work takes"
+)]
 fn now() -> Instant {
     Instant::now()
 }
@@ -39,7 +42,10 @@ impl StageObserver for StageTimes {
     fn end(&mut self, stage: Stage) {
         if let Some(begun) = self.begun.take() {
             let milliseconds = begun.elapsed().as_secs_f64() * 1e3;
-            self.milliseconds.entry(stage).or_default().push(milliseconds);
+            self.milliseconds
+                .entry(stage)
+                .or_default()
+                .push(milliseconds);
         }
     }
 }
@@ -71,7 +77,10 @@ mod tests {
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), 2.5);
         assert_eq!(median(vec![]), 0.0);
-        assert_eq!(percentile((0..=100).map(f64::from).collect(), 0.95), Some(95.0));
+        assert_eq!(
+            percentile((0..=100).map(f64::from).collect(), 0.95),
+            Some(95.0)
+        );
         assert_eq!(percentile(vec![], 0.5), None);
     }
 }

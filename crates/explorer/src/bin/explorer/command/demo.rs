@@ -31,7 +31,9 @@ pub(crate) fn run(arguments: &Demo, output: &Output) -> Result<(), Failure> {
     progress.step("writing the report");
     let page = folder.join("report.html");
     let input = report::of_flight(&flight, &run)?;
-    write_file(&page, |file| std::io::Write::write_all(file, report::html(&input).as_bytes()))?;
+    write_file(&page, |file| {
+        std::io::Write::write_all(file, report::html(&input).as_bytes())
+    })?;
     let summary = DemoReport {
         run: run.clone(),
         runs: [run.clone()],
@@ -43,23 +45,40 @@ pub(crate) fn run(arguments: &Demo, output: &Output) -> Result<(), Failure> {
     write_map(&flight, folder)?;
     drop(progress);
     let text = format!("{}\nreport: {}", flight::text(&run), page.display());
-    deliver(output, &summary, &text, || Ok(figures::flown(&flight, &flight::text(&run))))
+    deliver(output, &summary, &text, || {
+        Ok(figures::flown(&flight, &flight::text(&run)))
+    })
 }
 
 /// The final map, the tracked poses and the planned path, all in the map's frame and unit.
 fn write_map(flight: &explorer::SimulatedFlight, folder: &Path) -> Result<(), Failure> {
     let record = flight.mission().record();
-    let scale = record.meters_per_unit.map_or(Scale::Unknown, Scale::MetersPerUnit);
-    let map = Map { scale, ..flight.simulator().slam_ref().map() };
+    let scale = record
+        .meters_per_unit
+        .map_or(Scale::Unknown, Scale::MetersPerUnit);
+    let map = Map {
+        scale,
+        ..flight.simulator().slam_ref().map()
+    };
     write_file(&folder.join("map.ply"), |file| write_ply(&map, file))?;
     let trajectory: Vec<TimedPose> = figures::newest_trail(&record)
-        .map(|pose| TimedPose { time: pose.time.as_secs_f64(), pose: pose.world_from_camera })
+        .map(|pose| TimedPose {
+            time: pose.time.as_secs_f64(),
+            pose: pose.world_from_camera,
+        })
         .collect();
-    write_file(&folder.join("trajectory.tum"), |file| write_tum(&trajectory, file))?;
+    write_file(&folder.join("trajectory.tum"), |file| {
+        write_tum(&trajectory, file)
+    })?;
     let path: Vec<TimedPose> = record
         .cycles
         .iter()
-        .flat_map(|cycle| cycle.path.iter().map(|point| (cycle.time.as_secs_f64(), *point)))
+        .flat_map(|cycle| {
+            cycle
+                .path
+                .iter()
+                .map(|point| (cycle.time.as_secs_f64(), *point))
+        })
         .map(|(time, [x, y, z])| {
             let pose = Isometry3::translation(x, y, z);
             TimedPose { time, pose }

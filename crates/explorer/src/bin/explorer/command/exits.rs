@@ -70,7 +70,10 @@ pub(crate) fn exits(
 ) -> Result<ExitsReport, Failure> {
     let plane = AffinePlane::from_up(up, position).map_err(Failure::internal)?;
     let config = match rule {
-        ExitRule::RangeAware => ExitConfig { min_width, ..ExitConfig::default() },
+        ExitRule::RangeAware => ExitConfig {
+            min_width,
+            ..ExitConfig::default()
+        },
         ExitRule::Paper => ExitConfig::paper(),
     };
     let gazes = gazes(loaded);

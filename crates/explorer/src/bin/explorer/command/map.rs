@@ -100,8 +100,16 @@ fn pipeline(
     let clean = clean::clean(loaded, CleanMethod::Submodular, 1)?;
     let points = at(&loaded.points, &clean.kept_indices);
     progress.step("looking for exits");
-    let (exits, exits_seconds) =
-        timed(|| exits::exits(loaded, &points, position, up, ExitRule::RangeAware, Some(2.0 * radius)));
+    let (exits, exits_seconds) = timed(|| {
+        exits::exits(
+            loaded,
+            &points,
+            position,
+            up,
+            ExitRule::RangeAware,
+            Some(2.0 * radius),
+        )
+    });
     let exits = exits?;
     progress.step("building obstacles");
     let (built, seconds) = timed(|| {

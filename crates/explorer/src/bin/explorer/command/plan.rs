@@ -131,7 +131,11 @@ pub(crate) fn text(report: &PlanReport) -> String {
                 "path of {} legs, {length:.3} map units long ({raw:.3} before refinement), least clearance \
                  {clearance}, {}, in {:.3} s",
                 report.path.len().saturating_sub(1),
-                if report.space == "hulls" { "among hulls" } else { "through proven-free space" },
+                if report.space == "hulls" {
+                    "among hulls"
+                } else {
+                    "through proven-free space"
+                },
                 report.seconds
             )
         }

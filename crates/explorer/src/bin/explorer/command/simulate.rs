@@ -41,6 +41,9 @@ pub(crate) fn run(arguments: &Simulate, output: &Output) -> Result<(), Failure> 
     deliver(output, &report, &text.join("\n"), || {
         // The picture shows the last mission.
         let flight = last.ok_or_else(|| Failure::internal("nothing was flown"))?;
-        Ok(figures::flown(&flight, &text.last().cloned().unwrap_or_default()))
+        Ok(figures::flown(
+            &flight,
+            &text.last().cloned().unwrap_or_default(),
+        ))
     })
 }

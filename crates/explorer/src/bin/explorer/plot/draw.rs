@@ -76,8 +76,8 @@ impl Figure {
             .configure_mesh()
             .x_desc(self.axes[0].as_str())
             .y_desc(self.axes[1].as_str())
-            .axis_desc_style(font(15.0, TEXT))
-            .label_style(font(13.0, TEXT))
+            .axis_desc_style(font(17.0, TEXT))
+            .label_style(font(15.0, TEXT))
             .axis_style(FAINT)
             .bold_line_style(RGBColor(226, 229, 234))
             .light_line_style(TRANSPARENT)
@@ -90,7 +90,7 @@ impl Figure {
 
     fn draw_titles(&self, root: &Area<'_>, frame: &Frame) -> Result<(), DrawError> {
         let x = LEFT as i32;
-        root.draw(&Text::new(self.title.clone(), (x, 12), font(20.0, TEXT)))?;
+        root.draw(&Text::new(self.title.clone(), (x, 12), font(23.0, TEXT)))?;
         let subtitle = match frame.clipped(self) {
             (0, _) => self.subtitle.clone(),
             (outside, _) => format!(
@@ -98,7 +98,7 @@ impl Figure {
                 self.subtitle
             ),
         };
-        root.draw(&Text::new(subtitle, (x, 40), font(13.5, FAINT)))?;
+        root.draw(&Text::new(subtitle, (x, 40), font(15.5, FAINT)))?;
         Ok(())
     }
 
@@ -119,7 +119,7 @@ impl Figure {
                 .position(SeriesLabelPosition::UpperRight)
                 .background_style(WHITE.mix(0.86))
                 .border_style(RGBColor(206, 210, 216))
-                .label_font(font(13.0, TEXT))
+                .label_font(font(15.0, TEXT))
                 .draw()?;
         }
         Ok(())

@@ -30,8 +30,8 @@ pub(crate) fn cloud(label: &str, tint: Color, view: &TopView, points: &[[f64; 3]
 pub(crate) fn outliers(view: &TopView, points: &[[f64; 3]]) -> Layer {
     let shape = Shape::Crosses {
         at: view.project_all(points),
-        arm: 2.6,
-        width: 1.2,
+        arm: 2.1,
+        width: 1.0,
     };
     let label = format!("removed ({})", points.len());
     Layer::new(label, color::REMOVED, shape)

@@ -16,13 +16,23 @@ pub(crate) fn newest_trail<'a>(
     record: &MissionRecord<'a>,
 ) -> impl Iterator<Item = &'a TrailPose> + use<'a> {
     let newest = record.trail.iter().map(|pose| pose.epoch).max();
-    record.trail.iter().filter(move |pose| Some(pose.epoch) == newest)
+    record
+        .trail
+        .iter()
+        .filter(move |pose| Some(pose.epoch) == newest)
 }
 
 /// Cycles since the last reset of the map.
 pub(crate) fn newest_cycles<'a>(record: &MissionRecord<'a>) -> Vec<&'a Cycle> {
-    let since = newest_trail(record).next().map(|pose| pose.time).unwrap_or_default();
-    record.cycles.iter().filter(|cycle| cycle.time >= since).collect()
+    let since = newest_trail(record)
+        .next()
+        .map(|pose| pose.time)
+        .unwrap_or_default();
+    record
+        .cycles
+        .iter()
+        .filter(|cycle| cycle.time >= since)
+        .collect()
 }
 
 /// All figures of a mission, in the order of the paper.
@@ -34,13 +44,18 @@ pub(crate) fn of_flight(flight: &SimulatedFlight) -> Result<Vec<ReportFigure>, F
          knows nothing of this picture.",
         &flown(flight, ""),
     )?];
-    let Some(last) = record.scene else { return Ok(figures) };
+    let Some(last) = record.scene else {
+        return Ok(figures);
+    };
     let plane = AffinePlane::from_up(record.up, [0.0; 3]).map_err(Failure::internal)?;
     let view = TopView::of_plane(plane, "map units");
     let cycles = newest_cycles(&record);
     figures.push(raw_map(&view, last)?);
     figures.push(cleaned_map(&view, last)?);
-    let scans: Vec<&&Cycle> = cycles.iter().filter(|cycle| cycle.exits.is_some()).collect();
+    let scans: Vec<&&Cycle> = cycles
+        .iter()
+        .filter(|cycle| cycle.exits.is_some())
+        .collect();
     let step = scans.len().div_ceil(MAX_SCANS).max(1);
     for cycle in scans.into_iter().step_by(step) {
         figures.extend(profile(&view, last, cycle)?);
@@ -58,30 +73,48 @@ fn figure(name: &str, caption: &str, picture: &Figure) -> Result<ReportFigure, F
 }
 
 fn picture(title: &str, subtitle: String, view: &TopView, layers: Vec<Layer>) -> Figure {
-    Figure { title: title.to_owned(), subtitle, axes: view.names(), layers }
+    Figure {
+        title: title.to_owned(),
+        subtitle,
+        axes: view.names(),
+        layers,
+    }
 }
 
 fn raw_map(view: &TopView, last: &Scene) -> Result<ReportFigure, Failure> {
     let layers = vec![scene::cloud("map points", color::POINT, view, &last.points)];
     let subtitle = format!("{} points", last.points.len());
     let drawn = picture("Map as it comes from SLAM", subtitle, view, layers);
-    figure("Figure 3b.", "The final map from above, outliers and all.", &drawn)
+    figure(
+        "Figure 3b.",
+        "The final map from above, outliers and all.",
+        &drawn,
+    )
 }
 
 fn cleaned_map(view: &TopView, last: &Scene) -> Result<ReportFigure, Failure> {
-    let removed: Vec<[f64; 3]> =
-        last.removed.iter().filter_map(|index| last.points.get(*index).copied()).collect();
+    let removed: Vec<[f64; 3]> = last
+        .removed
+        .iter()
+        .filter_map(|index| last.points.get(*index).copied())
+        .collect();
     let layers = vec![
         scene::cloud("kept", color::POINT, view, &last.kept_points()),
         scene::outliers(view, &removed),
     ];
     let subtitle = format!("{} of {} points kept", last.kept.len(), last.points.len());
     let drawn = picture("Map without outliers", subtitle, view, layers);
-    figure("Figure 3c.", "The same map after outlier removal; crosses were removed.", &drawn)
+    figure(
+        "Figure 3c.",
+        "The same map after outlier removal; crosses were removed.",
+        &drawn,
+    )
 }
 
 fn profile(view: &TopView, last: &Scene, cycle: &Cycle) -> Result<Option<ReportFigure>, Failure> {
-    let Some(report) = &cycle.exits else { return Ok(None) };
+    let Some(report) = &cycle.exits else {
+        return Ok(None);
+    };
     let mut layers = scene::banded_cloud(view, &last.kept_points(), &report.profile, color::POINT);
     layers.push(scene::spokes(view, &report.profile));
     layers.extend(scene::exits(view, report));
@@ -92,7 +125,12 @@ fn profile(view: &TopView, last: &Scene, cycle: &Cycle) -> Result<Option<ReportF
         more => format!("{more} exits"),
     };
     let seconds = cycle.time.as_secs_f64();
-    let drawn = picture("Range profile and exits", format!("{found} at {seconds:.0} s"), view, layers);
+    let drawn = picture(
+        "Range profile and exits",
+        format!("{found} at {seconds:.0} s"),
+        view,
+        layers,
+    );
     let caption = format!(
         "The scan that ended at {seconds:.0} s: mean range per degree about the drone, and the exits \
          found. The points are those of the final map."
@@ -102,10 +140,18 @@ fn profile(view: &TopView, last: &Scene, cycle: &Cycle) -> Result<Option<ReportF
 
 fn path(view: &TopView, last: &Scene, cycles: &[&Cycle]) -> Result<Option<ReportFigure>, Failure> {
     // The paths of each flight on their own are short; the longest one shows most.
-    let longest = cycles.iter().max_by(|a, b| length(&a.raw_path).total_cmp(&length(&b.raw_path)));
-    let Some(cycle) = longest.filter(|cycle| !cycle.raw_path.is_empty()) else { return Ok(None) };
-    let hulls: Vec<Vec<[f64; 3]>> =
-        last.obstacles.obstacles().iter().map(|hull| hull.vertices.clone()).collect();
+    let longest = cycles
+        .iter()
+        .max_by(|a, b| length(&a.raw_path).total_cmp(&length(&b.raw_path)));
+    let Some(cycle) = longest.filter(|cycle| !cycle.raw_path.is_empty()) else {
+        return Ok(None);
+    };
+    let hulls: Vec<Vec<[f64; 3]>> = last
+        .obstacles
+        .obstacles()
+        .iter()
+        .map(|hull| hull.vertices.clone())
+        .collect();
     let mut layers = vec![
         scene::free_space(view, &last.free.voxel_centers(), last.free.resolution()),
         scene::hulls(view, &hulls),
@@ -127,7 +173,9 @@ fn path(view: &TopView, last: &Scene, cycles: &[&Cycle]) -> Result<Option<Report
 }
 
 fn length(path: &[[f64; 3]]) -> f64 {
-    path.windows(2).map(|leg| crate::input::distance(leg[0], leg[1])).sum()
+    path.windows(2)
+        .map(|leg| crate::input::distance(leg[0], leg[1]))
+        .sum()
 }
 
 /// The true floor plan with the true path.
@@ -140,25 +188,61 @@ pub(crate) fn flown(flight: &SimulatedFlight, subtitle: &str) -> Figure {
             let ([x0, y0, _], [x1, y1, _]) = (solid.min, solid.max);
             vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
         });
-        Shape::Polygons { rings: rings.collect(), rim: 0.5 }
+        Shape::Polygons {
+            rings: rings.collect(),
+            rim: 0.5,
+        }
     };
     let through = truth.trajectory.iter().map(|track| {
         let at = track.world_from_body.translation.vector;
         [at.x, at.y]
     });
-    let line = Shape::Line { through: through.collect(), width: 2.0, dashed: false };
-    let scans = flight.scan_positions().iter().map(|[x, y, _]| [*x, *y]).collect();
-    let start = truth.trajectory.first().map(|track| track.world_from_body.translation.vector);
+    let line = Shape::Line {
+        through: through.collect(),
+        width: 2.0,
+        dashed: false,
+    };
+    let scans = flight
+        .scan_positions()
+        .iter()
+        .map(|[x, y, _]| [*x, *y])
+        .collect();
+    let start = truth
+        .trajectory
+        .first()
+        .map(|track| track.world_from_body.translation.vector);
     let start = start.map(|at| vec![[at.x, at.y]]).unwrap_or_default();
-    let hits = truth.collisions.iter().map(|hit| [hit.position[0], hit.position[1]]).collect();
+    let hits = truth
+        .collisions
+        .iter()
+        .map(|hit| [hit.position[0], hit.position[1]])
+        .collect();
     let mut layers = vec![
         Layer::new("wall", color::WALL, boxes(SolidKind::Wall)).opacity(0.8),
         Layer::new("furniture", color::OBSTACLE, boxes(SolidKind::Furniture)).opacity(0.35),
         Layer::new("path flown", color::PATH, line),
-        Layer::new("full turn", color::SPOKE, Shape::Dots { at: scans, radius: 5.0 }),
-        Layer::new("start", color::AGENT, Shape::Dots { at: start, radius: 7.0 }),
+        Layer::new(
+            "full turn",
+            color::SPOKE,
+            Shape::Dots {
+                at: scans,
+                radius: 5.0,
+            },
+        ),
+        Layer::new(
+            "start",
+            color::AGENT,
+            Shape::Dots {
+                at: start,
+                radius: 7.0,
+            },
+        ),
     ];
-    let hits = Shape::Crosses { at: hits, arm: 7.0, width: 3.0 };
+    let hits = Shape::Crosses {
+        at: hits,
+        arm: 7.0,
+        width: 3.0,
+    };
     layers.push(Layer::new("collision", color::REMOVED, hits));
     Figure {
         title: format!("{} and the path flown, seen from above", world.name()),

@@ -8,13 +8,12 @@ use crate::failure::Failure;
 use crate::flight::RunReport;
 
 /// Everything that the page shows about a mission.
-pub(crate) fn of_flight(
-    flight: &SimulatedFlight,
-    run: &RunReport,
-) -> Result<ReportInput, Failure> {
+pub(crate) fn of_flight(flight: &SimulatedFlight, run: &RunReport) -> Result<ReportInput, Failure> {
     let record = flight.mission().record();
     let world = &run.world;
-    let outcome = record.outcome.map_or("it did not end".to_owned(), ToString::to_string);
+    let outcome = record
+        .outcome
+        .map_or("it did not end".to_owned(), ToString::to_string);
     Ok(ReportInput {
         title: format!("Exploring {world}"),
         lead: format!(
@@ -25,9 +24,16 @@ pub(crate) fn of_flight(
         facts: facts(run, &record),
         scene: viewer_scene(&record),
         figures: figures::of_flight(flight)?,
-        story: record.log.iter().map(|logged| {
-            (format!("{:.1} s", logged.time.as_secs_f64()), logged.event.to_string())
-        }).collect(),
+        story: record
+            .log
+            .iter()
+            .map(|logged| {
+                (
+                    format!("{:.1} s", logged.time.as_secs_f64()),
+                    logged.event.to_string(),
+                )
+            })
+            .collect(),
         command: format!("explorer demo --world {world} --seed {}", run.seed),
     })
 }
@@ -39,14 +45,29 @@ fn facts(run: &RunReport, record: &MissionRecord<'_>) -> Vec<(String, String)> {
     };
     let mut facts = vec![
         ("Outcome".to_owned(), summary.outcome.clone()),
-        ("Coverage".to_owned(), format!("{:.1} %", 100.0 * summary.coverage)),
+        (
+            "Coverage".to_owned(),
+            format!("{:.1} %", 100.0 * summary.coverage),
+        ),
         ("Collisions".to_owned(), summary.collisions.to_string()),
-        ("Least clearance".to_owned(), number(summary.min_clearance, "m")),
-        ("Path flown".to_owned(), format!("{:.1} m", summary.path_length)),
-        ("Time in flight".to_owned(), format!("{:.0} s", summary.sim_seconds)),
+        (
+            "Least clearance".to_owned(),
+            number(summary.min_clearance, "m"),
+        ),
+        (
+            "Path flown".to_owned(),
+            format!("{:.1} m", summary.path_length),
+        ),
+        (
+            "Time in flight".to_owned(),
+            format!("{:.0} s", summary.sim_seconds),
+        ),
         ("Full turns".to_owned(), summary.scans.to_string()),
         ("Cycles".to_owned(), record.cycles.len().to_string()),
-        ("Metres per map unit".to_owned(), number(record.meters_per_unit, "m")),
+        (
+            "Metres per map unit".to_owned(),
+            number(record.meters_per_unit, "m"),
+        ),
         ("Seed".to_owned(), run.seed.to_string()),
     ];
     if let Some(percent) = summary.battery_percent {
@@ -73,7 +94,10 @@ fn viewer_scene(record: &MissionRecord<'_>) -> ViewerScene {
         ..ViewerScene::default()
     };
     let exits = cycles.iter().filter_map(|cycle| cycle.exits.as_ref());
-    scene.exits = exits.flat_map(|report| &report.exits).map(|exit| exit.position).collect();
+    scene.exits = exits
+        .flat_map(|report| &report.exits)
+        .map(|exit| exit.position)
+        .collect();
     if let Some(last) = record.scene {
         let point = |index: &usize| last.points.get(*index).copied();
         scene.kept = last.kept_points();
@@ -92,5 +116,7 @@ fn viewer_scene(record: &MissionRecord<'_>) -> ViewerScene {
 
 fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    letters.next().map_or(String::new(), |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
 }

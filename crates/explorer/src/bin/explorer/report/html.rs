@@ -21,12 +21,19 @@ pub(crate) fn html(input: &ReportInput) -> String {
         .replace("{{facts}}", &facts)
         .replace("{{story}}", &story)
         .replace("{{figures}}", &figures)
-        .replace("{{scene}}", &viewer::json(&input.scene).replace('<', "\\u003c"))
+        .replace(
+            "{{scene}}",
+            &viewer::json(&input.scene).replace('<', "\\u003c"),
+        )
 }
 
 fn rows(rows: &[(String, String)]) -> String {
     let row = |(name, value): &(String, String)| {
-        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape(name), escape(value))
+        format!(
+            "<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n",
+            escape(name),
+            escape(value)
+        )
     };
     rows.iter().map(row).collect()
 }
@@ -40,11 +47,16 @@ fn figure(figure: &ReportFigure) -> String {
 /// Lets the picture follow the page's width.
 fn responsive(svg: &str) -> String {
     let start = svg.find("<svg").unwrap_or_default();
-    svg.get(start..).unwrap_or_default().replacen("<svg", "<svg class=\"plot\"", 1)
+    svg.get(start..)
+        .unwrap_or_default()
+        .replacen("<svg", "<svg class=\"plot\"", 1)
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }
 
 #[cfg(test)]
@@ -57,8 +69,14 @@ mod tests {
         let input = ReportInput {
             title: "a <b> & c".to_owned(),
             facts: vec![("coverage".to_owned(), "100 %".to_owned())],
-            figures: vec![ReportFigure { svg: "<svg></svg>".to_owned(), ..Default::default() }],
-            scene: ViewerScene { up: [0.0, 0.0, 1.0], ..Default::default() },
+            figures: vec![ReportFigure {
+                svg: "<svg></svg>".to_owned(),
+                ..Default::default()
+            }],
+            scene: ViewerScene {
+                up: [0.0, 0.0, 1.0],
+                ..Default::default()
+            },
             ..Default::default()
         };
         let page = html(&input);

@@ -4,14 +4,15 @@ use core::fmt::Write as _;
 
 /// Digits behind the point that a scene of this size needs.
 pub(super) fn digits(size: f64) -> usize {
-    if size.is_finite() && size > 0.0 { (4.0 - size.log10()).clamp(0.0, 12.0) as usize } else { 4 }
+    if size.is_finite() && size > 0.0 {
+        (4.0 - size.log10()).clamp(0.0, 12.0) as usize
+    } else {
+        4
+    }
 }
 
 /// A flat JSON array of all coordinates.
-pub(super) fn flat<'a>(
-    points: impl IntoIterator<Item = &'a [f64; 3]>,
-    digits: usize,
-) -> String {
+pub(super) fn flat<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>, digits: usize) -> String {
     let mut json = String::from("[");
     for value in points.into_iter().flatten() {
         if json.len() > 1 {

@@ -22,7 +22,10 @@ pub(super) fn json(scene: &ViewerScene) -> String {
     let step = scene.free.len().div_ceil(MAX_VOXELS).max(1);
     let free: Vec<[f64; 3]> = scene.free.iter().step_by(step).map(turn).collect();
     let paths = |paths: &[Vec<[f64; 3]>]| {
-        nested(&paths.iter().map(|path| all(path)).collect::<Vec<_>>(), digits)
+        nested(
+            &paths.iter().map(|path| all(path)).collect::<Vec<_>>(),
+            digits,
+        )
     };
     let (vertices, triangles) = obstacles(scene, turn);
     let unit = &scene.unit;
@@ -30,7 +33,11 @@ pub(super) fn json(scene: &ViewerScene) -> String {
         "{{\"unit\":\"{unit}\",\"voxel\":{},\"voxelStep\":{step},\"kept\":{},\"removed\":{},\
          \"vertices\":{},\"triangles\":{triangles:?},\"free\":{},\"exits\":{},\"raw\":{},\
          \"paths\":{},\"flown\":{}}}",
-        if scene.voxel.is_finite() { scene.voxel } else { 0.0 },
+        if scene.voxel.is_finite() {
+            scene.voxel
+        } else {
+            0.0
+        },
         flat(&kept, digits),
         flat(&all(&scene.removed), digits),
         flat(&vertices, digits),
@@ -51,7 +58,11 @@ fn obstacles(
     for mesh in &scene.obstacles {
         let first = vertices.len();
         vertices.extend(mesh.vertices.iter().map(&turn));
-        let known = mesh.triangles.iter().flatten().filter(|corner| **corner < mesh.vertices.len());
+        let known = mesh
+            .triangles
+            .iter()
+            .flatten()
+            .filter(|corner| **corner < mesh.vertices.len());
         triangles.extend(known.map(|corner| first + corner));
     }
     (vertices, triangles)
