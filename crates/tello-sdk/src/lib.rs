@@ -25,7 +25,10 @@ pub use command::{
     Arc, Class, Command, Credentials, Flip, Pad, Query, ReplyShape, SdkVersion, Waypoint,
 };
 #[cfg(feature = "std")]
-pub use driver::{ConnectError, DriveError, Drone, DroneConfig, VideoConfig, VideoStream};
+pub use driver::{
+    ConnectError, DriveError, Drone, DroneConfig, Found, StateHub, VideoConfig, VideoStream,
+    discover,
+};
 pub use reply::{Refusal, Reply, ReplyKind};
 pub use safety::{Alarm, Finding, PreflightConfig, SafetyConfig, preflight};
 pub use session::{

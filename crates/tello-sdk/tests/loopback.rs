@@ -196,3 +196,65 @@ fn video_comes_without_loss_and_fresh() {
         assert_eq!(stream.counters().1, 0);
     });
 }
+
+/// Up, a bit forward, down; the state comes from the hub.
+fn hop(hub: &StateHub, address: SocketAddr) -> bool {
+    let command_bind = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+    let config = DroneConfig {
+        command_bind,
+        ..DroneConfig::at(address)
+    };
+    let drone = Drone::connect_through(hub, config).unwrap();
+    drone.take_off().unwrap();
+    drone.forward(Distance::MIN).unwrap();
+    drone.land().is_ok()
+}
+
+#[test]
+fn three_drones_are_found_and_fly_over_one_state_port() {
+    let address = Ipv4Addr::new(127, 0, 0, 31);
+    let state_port = free_port(Ipv4Addr::LOCALHOST);
+    let drone = EmulatorConfig {
+        timing: Timing::fast(),
+        state_port,
+        ..EmulatorConfig::default()
+    };
+    let command_port = free_port(address);
+    let config = ServeConfig {
+        address,
+        command_port,
+        count: 3,
+        drone,
+        ..ServeConfig::default()
+    };
+    let local = |port| SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| serve(&config, &stop).unwrap());
+        let candidates: Vec<SocketAddr> = (29..36)
+            .map(|last| SocketAddr::from(([127, 0, 0, last], command_port)))
+            .collect();
+        let found = discover(local(0), &candidates, Duration::from_secs(1)).unwrap();
+        let hub = StateHub::bind(local(state_port)).unwrap();
+        let flown: Vec<bool> = std::thread::scope(|flights| {
+            let threads: Vec<_> = found
+                .iter()
+                .map(|found| flights.spawn(|| hop(&hub, found.address)))
+                .collect();
+            threads
+                .into_iter()
+                .map(|thread| thread.join().unwrap())
+                .collect()
+        });
+        stop.store(true, Ordering::Relaxed);
+        assert_eq!(flown, [true; 3]);
+        let serials: Vec<_> = found
+            .into_iter()
+            .map(|found| found.serial_number.unwrap())
+            .collect();
+        assert_eq!(
+            serials,
+            ["0TQEMULATED0010", "0TQEMULATED0011", "0TQEMULATED0012"]
+        );
+    });
+}

@@ -2,6 +2,7 @@
 
 use super::config::DroneConfig;
 use super::error::{ConnectError, DriveError};
+use super::hub::StateHub;
 use super::recorder::Recorder;
 use super::worker::{Message, Status, Worker, read};
 use crate::command::{Command, Query};
@@ -42,8 +43,21 @@ impl Drone {
     /// # Errors
     /// A port is in use, the drone does not answer, or sends no state.
     pub fn connect(config: DroneConfig) -> Result<Self, ConnectError> {
+        Self::connect_by(config, None)
+    }
+
+    /// Like [`Drone::connect`], with the state from a hub that several drones share
+    /// ([`DroneConfig::state_bind`] is not used then).
+    ///
+    /// # Errors
+    /// As [`Drone::connect`].
+    pub fn connect_through(hub: &StateHub, config: DroneConfig) -> Result<Self, ConnectError> {
+        Self::connect_by(config, Some(hub))
+    }
+
+    fn connect_by(config: DroneConfig, hub: Option<&StateHub>) -> Result<Self, ConnectError> {
         let (timeout, address) = (config.connect_timeout, config.drone);
-        let drone = Self::start(&config)?;
+        let drone = Self::start(&config, hub)?;
         let start = Instant::now();
         let answered = drone.execute(Command::EnterSdk);
         if answered.is_err() {
@@ -64,9 +78,8 @@ impl Drone {
         Ok(drone)
     }
 
-    fn start(config: &DroneConfig) -> Result<Self, ConnectError> {
+    fn start(config: &DroneConfig, hub: Option<&StateHub>) -> Result<Self, ConnectError> {
         let command = bind(config.command_bind)?;
-        let state = bind(config.state_bind)?;
         let socket = command.try_clone().map_err(ConnectError::Thread)?;
         let (inbox, messages) = channel();
         let (publish, events) = sync_channel(EVENTS);
@@ -84,15 +97,19 @@ impl Drone {
             recorder: Recorder::create(config.record.as_deref())?,
         };
         let started = (|| {
-            let readers = [
-                reader(command, &stop, &inbox, Message::Reply)?,
-                reader(state, &stop, &inbox, Message::State)?,
-            ];
+            let mut readers = Vec::from([reader(command, &stop, &inbox, Message::Reply)?]);
+            match hub {
+                Some(hub) => hub.register(config.drone.ip(), inbox.clone()),
+                None => {
+                    let state = bind(config.state_bind)?;
+                    readers.push(reader(state, &stop, &inbox, Message::State)?);
+                }
+            }
             Ok((readers, spawn("tello-session", move || worker.run())?))
         })();
         let (readers, worker) =
             started.inspect_err(|_: &ConnectError| stop.store(true, Ordering::Relaxed))?;
-        let (readers, worker) = (Vec::from(readers), Some(worker));
+        let worker = Some(worker);
         Ok(Self {
             inbox,
             events,
