@@ -85,6 +85,8 @@ pub(crate) struct Polar {
     pub(crate) bearing: f64,
     pub(crate) range: f64,
     pub(crate) height: f64,
+    /// Offset from the agent in plane coordinates.
+    pub(crate) offset: [f64; 2],
 }
 
 /// The agent as the centre of bearings.
@@ -131,6 +133,7 @@ impl Eye {
             bearing: wrap(dy.atan2(dx)),
             range: squared.sqrt(),
             height,
+            offset: [dx, dy],
         })
     }
 }
@@ -156,7 +159,7 @@ fn keep_band(
     let before = polar.len();
     if let Some([from, to]) = band {
         polar.retain(|p| {
-            let height = p.height - p.range * strip.slope(p.bearing);
+            let height = p.height - strip.height_at(p.offset, p.range);
             let widened = widening * p.range;
             height >= from.min(-widened) && height <= to.max(widened)
         });
@@ -187,9 +190,10 @@ fn ordered_mean(values: Vec<f64>) -> f64 {
         return 0.0;
     }
     let unit = largest * (-40f64).exp2();
+    let inverse = 1.0 / unit;
     let sum: i128 = values
         .iter()
-        .map(|&v| i128::from((v / unit).round() as i64))
+        .map(|&v| i128::from((v * inverse) as i64))
         .sum();
     sum as f64 * unit / values.len() as f64
 }

@@ -157,7 +157,7 @@ impl LiveProfile {
                 Place::NonFinite
             };
         };
-        let height = p.height - p.range * self.strip.slope(p.bearing);
+        let height = p.height - self.strip.height_at(p.offset, p.range);
         let widened = self.widening * p.range;
         if self
             .band

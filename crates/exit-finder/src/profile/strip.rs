@@ -11,11 +11,13 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, Vector3};
 
 use super::binning::Polar;
-use super::statistics::median;
 
 const SECTORS: usize = 36;
+/// Slopes are counted in cells of less than a degree up to this steepness, steeper ones at the ends.
+const CELLS: usize = 256;
+const STEEPEST: f64 = 1.5;
 /// Sectors with fewer points have no say.
-const MIN_POINTS: usize = 5;
+const MIN_POINTS: u32 = 5;
 /// Pull of the tilt to zero, in sectors of unit residual.
 const PULL: f64 = 1.0;
 const ROUNDS: usize = 10;
@@ -36,24 +38,47 @@ impl Strip {
         self.pitch + self.tilt[0] * cos + self.tilt[1] * sin
     }
 
+    /// Height of the middle of the strip at an offset from the agent.
+    pub(crate) fn height_at(&self, offset: [f64; 2], range: f64) -> f64 {
+        self.pitch * range + self.tilt[0] * offset[0] + self.tilt[1] * offset[1]
+    }
+
     /// The strip of a cloud; level when there are too few points to tell.
     pub(crate) fn of(polar: &[Polar]) -> Self {
-        let mut slopes: Vec<Vec<f64>> = vec![Vec::new(); SECTORS];
+        let mut histogram = vec![[0u32; CELLS]; SECTORS];
         for p in polar {
-            let sector = (p.bearing / TAU * SECTORS as f64) as usize;
-            slopes[sector.min(SECTORS - 1)].push(p.height / p.range);
+            let sector = (p.bearing * (SECTORS as f64 / TAU)) as usize;
+            let cell = (p.height / p.range / STEEPEST * 0.5 + 0.5) * CELLS as f64;
+            histogram[sector.min(SECTORS - 1)][(cell as usize).min(CELLS - 1)] += 1;
         }
-        let samples: Vec<(Vector3<f64>, f64)> = slopes
-            .iter_mut()
+        let samples: Vec<(Vector3<f64>, f64)> = histogram
+            .iter()
             .enumerate()
-            .filter(|(_, slopes)| slopes.len() >= MIN_POINTS)
-            .filter_map(|(sector, slopes)| {
+            .filter_map(|(sector, cells)| {
                 let (sin, cos) = ((sector as f64 + 0.5) * TAU / SECTORS as f64).sin_cos();
-                Some((Vector3::new(1.0, cos, sin), median(slopes)?))
+                Some((Vector3::new(1.0, cos, sin), median_slope(cells)?))
             })
             .collect();
         fit(&samples)
     }
+}
+
+/// Median of a histogram of slopes, interpolated in its cell; `None` for too few points.
+fn median_slope(cells: &[u32; CELLS]) -> Option<f64> {
+    let total: u32 = cells.iter().sum();
+    if total < MIN_POINTS {
+        return None;
+    }
+    let half = 0.5 * f64::from(total);
+    let mut below = 0.0;
+    for (cell, &count) in cells.iter().enumerate() {
+        if below + f64::from(count) >= half {
+            let share = (half - below) / f64::from(count);
+            return Some(((cell as f64 + share) / CELLS as f64 - 0.5) * 2.0 * STEEPEST);
+        }
+        below += f64::from(count);
+    }
+    None
 }
 
 fn fit(samples: &[(Vector3<f64>, f64)]) -> Strip {
@@ -96,6 +121,7 @@ mod tests {
                 let slope = -0.1 + 0.2 * bearing.cos() - 0.15 * bearing.sin();
                 (0..9).map(move |k| Polar {
                     bearing,
+                    offset: [2.0 * bearing.cos(), 2.0 * bearing.sin()],
                     range: 2.0,
                     height: 2.0 * (slope + 0.1 * (f64::from(k) - 4.0)),
                 })
