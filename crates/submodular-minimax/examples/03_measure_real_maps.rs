@@ -12,9 +12,9 @@ mod labelled;
 #[path = "../tests/labelled/baselines.rs"]
 mod settings;
 
-use labelled::{average_precision, f1, false_positive_rate};
+use labelled::{Labelled, average_precision, f1, false_positive_rate};
 use std::error::Error;
-use submodular_minimax::{OutlierConfig, RayConfig, Views, remove_outliers};
+use submodular_minimax::{OutlierConfig, OutlierError, RayConfig, Views, remove_outliers};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folders: Vec<String> = std::env::args().skip(1).collect();
@@ -71,27 +71,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, config, observed) in ours {
         print!("{name:34}");
         for map in &maps {
-            let views = map.views.as_ref().filter(|_| observed);
-            let found = remove_outliers(&map.points, views, &config)?;
-            let (f1, ap) = (
-                f1(&found.removed, &map.outlier),
-                average_precision(&found.scores, &map.outlier),
-            );
-            let fpr = false_positive_rate(&found.removed, &map.outlier);
-            print!(" {:>34}", format!("{f1:.3} / {ap:.3} (FPR {fpr:.3})"));
+            row(map, map.views.as_ref().filter(|_| observed), &config)?;
         }
         println!();
     }
     print!("{:34}", "default, agent at the origin");
     for map in &maps {
         let views = Views::from_position([0.0; 3], map.points.len())?;
-        let found = remove_outliers(&map.points, Some(&views), &OutlierConfig::default())?;
-        let (f1, ap) = (
-            f1(&found.removed, &map.outlier),
-            average_precision(&found.scores, &map.outlier),
-        );
-        print!(" {:>34}", format!("{f1:.3} / {ap:.3}"));
+        row(map, Some(&views), &OutlierConfig::default())?;
     }
     println!();
+    Ok(())
+}
+
+fn row(map: &Labelled, views: Option<&Views>, config: &OutlierConfig) -> Result<(), OutlierError> {
+    let found = remove_outliers(&map.points, views, config)?;
+    let ap = average_precision(&found.scores, &map.outlier);
+    let fpr = false_positive_rate(&found.removed, &map.outlier);
+    let f1 = f1(&found.removed, &map.outlier);
+    print!(" {:>34}", format!("{f1:.3} / {ap:.3} (FPR {fpr:.3})"));
     Ok(())
 }

@@ -288,7 +288,10 @@ fn scores_are_the_same_bits_with_and_without_threads() {
     let (points, views) = observed_room(3_000, 5);
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     // The ranged reading takes logarithms, whose last bit may differ between platforms.
-    for config in presets().into_iter().filter(|c| c.reading != Reading::Ranged) {
+    for config in presets()
+        .into_iter()
+        .filter(|c| c.reading != Reading::Ranged)
+    {
         for score in remove_outliers(&points, Some(&views), &config)
             .unwrap()
             .scores
