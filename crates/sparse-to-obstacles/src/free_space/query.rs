@@ -73,6 +73,10 @@ impl FreeSpace {
         if !(is_finite(a) && is_finite(b) && radius >= 0.0 && radius.is_finite()) {
             return false;
         }
+        // The grid is convex, and nothing beyond it is free.
+        if self.grid.index_of(a).is_none() || self.grid.index_of(b).is_none() {
+            return false;
+        }
         let length = distance(a, b);
         let at = |done: f64| {
             if done > 0.0 {

@@ -139,17 +139,20 @@ fn checked<P: PointLike>(points: &[P], config: &KMeansConfig) -> Result<Vec<Vec3
         let (clusters, points) = (config.clusters, points.len());
         return Err(KMeansError::TooManyClusters { clusters, points });
     }
+    usable_points(points)
+}
+
+/// The points, if all are finite and not so large that their squares overflow.
+pub(crate) fn usable_points<P: PointLike>(points: &[P]) -> Result<Vec<Vec3>, KMeansError> {
     let points = finite_points(points).map_err(|index| KMeansError::NotFinite { index })?;
-    if let Some(index) = points
-        .iter()
-        .position(|point| point.iter().any(|c| c.abs() > LARGEST))
-    {
-        return Err(KMeansError::TooLarge {
+    let too_large = |point: &Vec3| point.iter().any(|c| c.abs() > LARGEST);
+    match points.iter().position(too_large) {
+        Some(index) => Err(KMeansError::TooLarge {
             index,
             largest: LARGEST,
-        });
+        }),
+        None => Ok(points),
     }
-    Ok(points)
 }
 
 /// Coordinates beyond this overflow when squared distances are summed.

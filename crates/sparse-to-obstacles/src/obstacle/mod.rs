@@ -16,8 +16,8 @@ pub use update::ObstacleUpdate;
 
 use crate::free_space::Ray;
 use crate::hull::{self, Hull};
-use crate::kmeans::{Clustering, KMeansError};
-use crate::point::{PointLike, finite_points};
+use crate::kmeans::{self, Clustering};
+use crate::point::PointLike;
 use crate::vector::Vec3;
 use rand::Rng;
 
@@ -84,12 +84,12 @@ impl ObstacleSet {
     /// The hulls of an existing partition. Labels beyond the centroids, or missing ones, are ignored.
     ///
     /// # Errors
-    /// A coordinate that is not finite.
+    /// A coordinate that is not finite or beyond 1e140.
     pub fn from_clustering<P: PointLike>(
         points: &[P],
         clustering: &Clustering,
     ) -> Result<Self, ObstacleError> {
-        let points = finite_points(points).map_err(|index| KMeansError::NotFinite { index })?;
+        let points = kmeans::usable_points(points)?;
         let mut members = vec![Vec::new(); clustering.centroids.len()];
         for (index, &label) in clustering.labels.iter().enumerate().take(points.len()) {
             if let Some(members) = members.get_mut(label) {

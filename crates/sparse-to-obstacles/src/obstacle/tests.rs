@@ -1,6 +1,7 @@
 //! Tests of obstacle sets: queries against brute force, splitting, updates, export.
 
 use super::*;
+use crate::KMeansError;
 use crate::hull::HullKind;
 use crate::vector::{add, distance, lerp};
 use rand::{RngExt, SeedableRng};
