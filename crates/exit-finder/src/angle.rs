@@ -4,7 +4,12 @@ use std::f64::consts::{PI, TAU};
 
 /// Maps any finite angle to `[0, 2π)`.
 pub(crate) fn wrap(angle: f64) -> f64 {
-    let wrapped = angle.rem_euclid(TAU);
+    // The remainder is slow and rarely needed: bearings come from atan2.
+    let wrapped = match angle {
+        angle if (0.0..TAU).contains(&angle) => return angle,
+        angle if (-TAU..0.0).contains(&angle) => angle + TAU,
+        angle => angle.rem_euclid(TAU),
+    };
     if wrapped >= TAU { 0.0 } else { wrapped }
 }
 
