@@ -1,5 +1,10 @@
 //! Ranked exits of a map: the range-aware rule, the paper's rule, and the naive form of the paper's
 //! rule (one pass over all points per bin), at three sizes.
+#![allow(
+    clippy::expect_used,
+    missing_docs,
+    reason = "a benchmark has no caller"
+)]
 
 use std::hint::black_box;
 
@@ -29,9 +34,8 @@ fn room(n: usize) -> Vec<[f64; 3]> {
 /// Algorithm 2 by the book: for every degree, count the points whose angle lies in it.
 fn naive(points: &[[f64; 3]]) -> usize {
     let filled = |degree: u32| {
-        let inside = |p: &&[f64; 3]| {
-            p[1].atan2(p[0]).to_degrees().rem_euclid(360.0) as u32 == degree
-        };
+        let inside =
+            |p: &&[f64; 3]| p[1].atan2(p[0]).to_degrees().rem_euclid(360.0) as u32 == degree;
         points.iter().filter(inside).count() > 1
     };
     let (mut longest, mut run) = (0, 0);
@@ -48,11 +52,20 @@ fn exits(c: &mut Criterion) {
     for n in [1_000, 10_000, 100_000] {
         let points = room(n);
         group.throughput(Throughput::Elements(n as u64));
-        for (name, config) in
-            [("range_aware", ExitConfig::default()), ("paper", ExitConfig::paper_repaired())]
-        {
+        for (name, config) in [
+            ("range_aware", ExitConfig::default()),
+            ("paper", ExitConfig::paper_repaired()),
+        ] {
             group.bench_function(BenchmarkId::new(name, n), |b| {
-                b.iter(|| find_exits(black_box(&points), AGENT, &plane, &ExitView::default(), &config));
+                b.iter(|| {
+                    find_exits(
+                        black_box(&points),
+                        AGENT,
+                        &plane,
+                        &ExitView::default(),
+                        &config,
+                    )
+                });
             });
         }
         group.bench_function(BenchmarkId::new("profile", n), |b| {

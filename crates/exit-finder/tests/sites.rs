@@ -119,7 +119,7 @@ fn a_map_correction_moves_sites_and_portals() {
     let old: Vec<[f64; 3]> = graph
         .portals()
         .iter()
-        .map(|portal| portal.middle())
+        .map(exit_finder::sites::Portal::middle)
         .collect();
     let quarter = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
     assert_eq!(graph.reanchor(&pose([10.0, 0.0, 1.0], quarter)), Ok(0));
