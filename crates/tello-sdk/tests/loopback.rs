@@ -1,9 +1,10 @@
 //! The blocking driver against emulated drones on loopback sockets.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use tello_sdk::emulator::udp::{ServeConfig, serve, serve_with_cameras};
 use tello_sdk::emulator::{EmulatorConfig, Timing, VideoSource};
@@ -129,7 +130,7 @@ fn a_port_in_use_is_named() {
 }
 
 /// Units of the real sizes, each with its number, every thirtieth a key frame.
-struct Numbers(u32);
+struct Numbers(u32, Arc<Mutex<Vec<Instant>>>);
 
 impl VideoSource for Numbers {
     fn next_unit(&mut self, _now: Duration) -> Option<Vec<u8>> {
@@ -142,6 +143,7 @@ impl VideoSource for Numbers {
         unit.extend(self.0.to_be_bytes().map(|byte| byte | 0x80));
         unit.resize(if is_key { 35_000 } else { 10_000 }, 7);
         self.0 += 1;
+        self.1.lock().unwrap().push(Instant::now());
         Some(unit)
     }
 }
@@ -173,9 +175,16 @@ fn video_comes_without_loss_and_fresh() {
         ..ServeConfig::default()
     };
     let stop = AtomicBool::new(false);
+    let created = Arc::new(Mutex::new(Vec::new()));
     std::thread::scope(|scope| {
-        scope
-            .spawn(|| serve_with_cameras(&config, &|_| Some(Box::new(Numbers(0))), &stop).unwrap());
+        scope.spawn(|| {
+            serve_with_cameras(
+                &config,
+                &|_| Some(Box::new(Numbers(0, Arc::clone(&created)))),
+                &stop,
+            )
+            .unwrap();
+        });
         let client = DroneConfig {
             drone: SocketAddr::from((address, config.command_port)),
             command_bind: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
@@ -184,9 +193,18 @@ fn video_comes_without_loss_and_fresh() {
         };
         let drone = Drone::connect(client).unwrap();
         drone.execute(Command::StreamOn).unwrap();
-        let units: Vec<_> = (0..45)
-            .map_while(|_| stream.next(Duration::from_secs(2)))
-            .collect();
+        let mut ages = Vec::new();
+        let mut take = || {
+            let unit = stream.next(Duration::from_secs(2))?;
+            ages.push(created.lock().unwrap()[ages.len()].elapsed());
+            Some(unit)
+        };
+        let units: Vec<_> = (0..45).map_while(|_| take()).collect();
+        ages.sort();
+        println!(
+            "age of a unit when taken: median {:?}, p95 {:?}",
+            ages[22], ages[42]
+        );
         let newest = stream.newest(Duration::from_secs(2));
         stop.store(true, Ordering::Relaxed);
         assert_eq!(units.len(), 45);
