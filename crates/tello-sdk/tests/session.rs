@@ -344,3 +344,34 @@ fn a_recorded_flight_runs_again_to_the_letter() {
             .is_empty()
     );
 }
+
+#[test]
+fn times_at_the_end_of_time_do_not_overflow() {
+    let mut session = Session::new(SessionConfig::default()).unwrap();
+    session.request(Duration::MAX, Command::EnterSdk).unwrap();
+    session.set_sticks(Duration::MAX, Sticks::CENTER).unwrap();
+    for _ in 0..50 {
+        session.handle_input(Input::Tick(Duration::MAX));
+        let _ = session.poll_output();
+    }
+    let config = SessionConfig {
+        keep_alive: Some(Duration::MAX),
+        ..SessionConfig::default()
+    };
+    assert!(matches!(
+        Session::new(config),
+        Err(ConfigError::TooLong {
+            field: "keep_alive"
+        })
+    ));
+    let config = SessionConfig {
+        stick_period: Duration::ZERO,
+        ..SessionConfig::default()
+    };
+    assert!(matches!(
+        Session::new(config),
+        Err(ConfigError::Zero {
+            field: "stick_period"
+        })
+    ));
+}

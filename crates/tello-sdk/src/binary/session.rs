@@ -168,6 +168,9 @@ pub struct BinarySession {
     outputs: VecDeque<BinaryOutput>,
 }
 
+/// Later times are taken as this one (a hundred years), so that sums of times cannot overflow.
+const LATEST: Duration = Duration::from_secs(100 * 365 * 86_400);
+
 /// Commands that wait for an acknowledgement at most; the oldest is given up beyond.
 const PENDING: usize = 64;
 
@@ -197,7 +200,7 @@ impl BinarySession {
 
     /// Sends a command once (`land`: until confirmed); its end comes as an event.
     pub fn command(&mut self, now: Duration, command: BinaryCommand) -> CommandId {
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         self.next_id += 1;
         let id = CommandId(self.next_id);
         if command == BinaryCommand::Land {
@@ -220,7 +223,7 @@ impl BinarySession {
 
     /// Sets the sticks; to be repeated within the watchdog's time.
     pub fn set_sticks(&mut self, now: Duration, sticks: Sticks) {
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         if self.landing.is_none() {
             self.sticks = sticks;
             self.sticks_set = Some(self.now);
@@ -230,7 +233,7 @@ impl BinarySession {
 
     /// Asks for video, or no longer.
     pub fn set_video(&mut self, now: Duration, on: bool) {
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         self.next_video = on.then_some(self.now);
         self.advance();
     }
@@ -245,7 +248,7 @@ impl BinarySession {
 
     /// Takes in a datagram of the drone's command port.
     pub fn handle_datagram(&mut self, at: Duration, bytes: &[u8]) {
-        self.now = self.now.max(at);
+        self.now = self.now.max(at.min(LATEST));
         if bytes.starts_with(b"conn_ack:") {
             self.heard = self.now;
             if !self.connected {
@@ -265,7 +268,7 @@ impl BinarySession {
 
     /// Lets time pass.
     pub fn handle_timeout(&mut self, now: Duration) {
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         self.advance();
     }
 

@@ -15,6 +15,12 @@ pub enum ConfigError {
         /// The field's name.
         field: &'static str,
     },
+    /// A time is longer than a year: such a wait is a mistake.
+    #[error("`{field}` is longer than a year")]
+    TooLong {
+        /// The field's name.
+        field: &'static str,
+    },
     /// A count must not be zero.
     #[error("`{field}` is zero: at least one attempt is needed")]
     NoAttempt {
@@ -117,7 +123,7 @@ impl Default for SessionConfig {
 }
 
 impl SessionConfig {
-    /// Checks that every period is positive and every command is sent at least once.
+    /// Checks that every period is positive and at most a year, and every command is sent at least once.
     ///
     /// # Errors
     /// The first field that is zero.
@@ -135,11 +141,35 @@ impl SessionConfig {
             ("stick_watchdog", self.stick_watchdog),
             ("link_timeout", self.link_timeout),
             ("queue_timeout", self.queue_timeout),
-            ("keep_alive", self.keep_alive.unwrap_or(Duration::MAX)),
-            ("heartbeat", self.heartbeat.unwrap_or(Duration::MAX)),
+            (
+                "keep_alive",
+                self.keep_alive.unwrap_or(Duration::from_secs(1)),
+            ),
+            (
+                "heartbeat",
+                self.heartbeat.unwrap_or(Duration::from_secs(1)),
+            ),
         ];
         if let Some(&(field, _)) = periods.iter().find(|(_, time)| time.is_zero()) {
             return Err(ConfigError::Zero { field });
+        }
+        let others = [
+            ("probe_after", self.probe_after),
+            ("settle", self.settle),
+            ("max_delay", self.max_delay),
+            ("duplicate_window", self.duplicate_window),
+            ("safety_give_up", self.safety_give_up),
+            ("stop_give_up", self.stop_give_up),
+            (
+                "max_flight_time",
+                self.safety.max_flight_time.unwrap_or_default(),
+            ),
+            ("link_silence", self.safety.link_silence.unwrap_or_default()),
+        ];
+        let year = Duration::from_secs(365 * 86_400);
+        let long = periods.iter().chain(&others).find(|(_, time)| *time > year);
+        if let Some(&(field, _)) = long {
+            return Err(ConfigError::TooLong { field });
         }
         if self.attempts == 0 {
             return Err(ConfigError::NoAttempt { field: "attempts" });

@@ -42,6 +42,9 @@ use ledger::Ledger;
 use priority::Urgent;
 use sticks::StickLane;
 
+/// Later times are taken as this one (a hundred years), so that sums of times cannot overflow.
+const LATEST: Duration = Duration::from_secs(100 * 365 * 86_400);
+
 /// One drone as seen from this side of the link.
 #[derive(Debug, Clone)]
 pub struct Session {
@@ -107,7 +110,7 @@ impl Session {
     /// The drone's SDK lacks the command, the queue is full, sticks are in use, or an alarm is latched.
     pub fn request(&mut self, now: Duration, command: Command) -> Result<RequestId, RequestError> {
         self.accepts(&command)?;
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         self.next_id += 1;
         let id = RequestId(self.next_id);
         if command.class() == Class::Safety {
@@ -169,7 +172,7 @@ impl Session {
         if moving || waiting || self.urgent.is_some() {
             return Err(RequestError::MotionRunning);
         }
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         self.sticks.set(self.now, sticks);
         self.advance();
         Ok(())
@@ -177,21 +180,21 @@ impl Session {
 
     /// Centres the sticks and goes quiet after saying so several times.
     pub fn release_sticks(&mut self, now: Duration) {
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         self.sticks.release(self.now);
         self.advance();
     }
 
     /// Tells that the owner is alive; needed only with [`SessionConfig::heartbeat`].
     pub fn heartbeat(&mut self, now: Duration) {
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         self.last_beat = self.now;
         self.advance();
     }
 
     /// Reports a position from outside (SLAM, a simulator) for the fence of the safety limits, metres.
     pub fn report_position(&mut self, now: Duration, position: [f64; 3]) {
-        self.now = self.now.max(now);
+        self.now = self.now.max(now.min(LATEST));
         if let Some(fence) = &self.config.safety.fence {
             let distance_cm = outside(fence, position);
             if distance_cm > 0 && self.guard.is_flying() {
@@ -209,13 +212,13 @@ impl Session {
     /// Takes in a datagram or the passing of time.
     pub fn handle_input(&mut self, input: Input<'_>) {
         match input {
-            Input::Tick(at) => self.now = self.now.max(at),
+            Input::Tick(at) => self.now = self.now.max(at.min(LATEST)),
             Input::Reply { at, origin, bytes } => {
-                self.now = self.now.max(at);
+                self.now = self.now.max(at.min(LATEST));
                 self.on_reply(origin, bytes);
             }
             Input::State { at, origin, bytes } => {
-                self.now = self.now.max(at);
+                self.now = self.now.max(at.min(LATEST));
                 self.on_state(origin, bytes);
             }
         }

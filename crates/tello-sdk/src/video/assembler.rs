@@ -158,7 +158,7 @@ impl Assembler {
     #[must_use]
     pub fn deadline(&self) -> Option<Duration> {
         let waits = self.picture.is_some() && self.config.framing == Framing::Text;
-        waits.then(|| self.last + self.config.idle)
+        waits.then(|| self.last.saturating_add(self.config.idle))
     }
 
     /// What was seen so far.
