@@ -135,11 +135,11 @@ pub(crate) fn plan(question: &Question<'_>, points: &[[f64; 3]]) -> Result<Answe
         ..RrtConfig::default()
     };
     let star = RrtStarConfig {
-        rrt: config.clone(),
+        rrt: config,
         ..RrtStarConfig::default()
     };
     let informed = RrtStarConfig {
-        rrt: config.clone(),
+        rrt: config,
         ..RrtStarConfig::informed()
     };
     let mut rng = Pcg64::seed_from_u64(question.seed);

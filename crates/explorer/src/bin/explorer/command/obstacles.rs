@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use slam_bridge::{Map, write_ply};
+use sparse_to_obstacles::FreeSpace;
 
 use crate::args::{Obstacles, Output, Vector};
 use crate::failure::Failure;
@@ -46,7 +47,7 @@ pub(crate) fn run(arguments: &Obstacles, output: &Output) -> Result<(), Failure>
         let centers = built
             .free
             .as_ref()
-            .map(|free| free.voxel_centers())
+            .map(FreeSpace::voxel_centers)
             .unwrap_or_default();
         let map = Map {
             scale: loaded.map.scale,
@@ -65,8 +66,8 @@ pub(crate) fn report(built: &Surroundings, seconds: f64) -> ObstaclesReport {
         obstacles: built.obstacles.len(),
         degenerate: built.obstacles.degenerate_count(),
         inertia: built.obstacles.inertia(),
-        proven_free_voxels: built.free.as_ref().map_or(0, |free| free.voxel_count()),
-        resolution: built.free.as_ref().map(|free| free.resolution()),
+        proven_free_voxels: built.free.as_ref().map_or(0, FreeSpace::voxel_count),
+        resolution: built.free.as_ref().map(FreeSpace::resolution),
         seconds,
     }
 }

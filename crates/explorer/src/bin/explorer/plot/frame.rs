@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::figure::Figure;
+use super::figure::{Figure, Layer};
 
 /// Share of a cloud's coordinates left out at each end of each axis.
 const TAIL: f64 = 0.01;
@@ -57,7 +57,7 @@ impl Frame {
     /// How many coordinates of clouds lie outside, and of how many.
     pub(crate) fn clipped(&self, figure: &Figure) -> (usize, usize) {
         let clouds = figure.layers.iter().filter(|layer| !layer.in_frame);
-        let coordinates: Vec<[f64; 2]> = clouds.flat_map(|layer| layer.coordinates()).collect();
+        let coordinates: Vec<[f64; 2]> = clouds.flat_map(Layer::coordinates).collect();
         let outside = coordinates
             .iter()
             .filter(|point| !self.contains(**point))

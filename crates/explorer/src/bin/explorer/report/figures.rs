@@ -2,7 +2,7 @@
 
 use exit_finder::AffinePlane;
 use explorer::{Cycle, MissionRecord, Scene, SimulatedFlight, TrailPose};
-use indoor_sim::SolidKind;
+use indoor_sim::{SolidKind, World};
 
 use super::input::ReportFigure;
 use crate::failure::Failure;
@@ -182,17 +182,6 @@ fn length(path: &[[f64; 3]]) -> f64 {
 pub(crate) fn flown(flight: &SimulatedFlight, subtitle: &str) -> Figure {
     let world = flight.simulator().world();
     let truth = flight.simulator().truth();
-    let boxes = |kind: SolidKind| {
-        let solids = world.solids().iter().filter(|solid| solid.kind == kind);
-        let rings = solids.map(|solid| {
-            let ([x0, y0, _], [x1, y1, _]) = (solid.min, solid.max);
-            vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
-        });
-        Shape::Polygons {
-            rings: rings.collect(),
-            rim: 0.5,
-        }
-    };
     let through = truth.trajectory.iter().map(|track| {
         let at = track.world_from_body.translation.vector;
         [at.x, at.y]
@@ -218,8 +207,13 @@ pub(crate) fn flown(flight: &SimulatedFlight, subtitle: &str) -> Figure {
         .map(|hit| [hit.position[0], hit.position[1]])
         .collect();
     let mut layers = vec![
-        Layer::new("wall", color::WALL, boxes(SolidKind::Wall)).opacity(0.8),
-        Layer::new("furniture", color::OBSTACLE, boxes(SolidKind::Furniture)).opacity(0.35),
+        Layer::new("wall", color::WALL, boxes(world, SolidKind::Wall)).opacity(0.8),
+        Layer::new(
+            "furniture",
+            color::OBSTACLE,
+            boxes(world, SolidKind::Furniture),
+        )
+        .opacity(0.35),
         Layer::new("path flown", color::PATH, line),
         Layer::new(
             "full turn",
@@ -249,5 +243,18 @@ pub(crate) fn flown(flight: &SimulatedFlight, subtitle: &str) -> Figure {
         subtitle: subtitle.to_owned(),
         axes: ["x [m]".to_owned(), "y [m]".to_owned()],
         layers,
+    }
+}
+
+/// Outlines of the world's solids of one kind.
+fn boxes(world: &World, kind: SolidKind) -> Shape {
+    let solids = world.solids().iter().filter(|solid| solid.kind == kind);
+    let rings = solids.map(|solid| {
+        let ([x0, y0, _], [x1, y1, _]) = (solid.min, solid.max);
+        vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+    });
+    Shape::Polygons {
+        rings: rings.collect(),
+        rim: 0.5,
     }
 }
