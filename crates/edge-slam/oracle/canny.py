@@ -28,9 +28,9 @@ for norm, low, high in (("l1", 50, 150), ("l1", 100, 200), ("l2", 50, 150)):
         image = cv2.imread(path, cv2.IMREAD_GRAYSCALE)
         best = 1e9
         for _ in range(5):
-            start = time.perf_counter()
+            start = time.thread_time()
             edges = cv2.Canny(image, low, high, L2gradient=norm == "l2")
-            best = min(best, time.perf_counter() - start)
+            best = min(best, time.thread_time() - start)
         theirs.append(best * 1e6)
         mine = cv2.imread(str(scratch / f"{index:04}.pgm"), cv2.IMREAD_GRAYSCALE)
         agreement.append(((mine > 0) & (edges > 0)).sum() / max(1, ((mine > 0) | (edges > 0)).sum()))

@@ -1,20 +1,24 @@
 //! Writes the ORB features of images as text, for the comparison in `orb.py`.
 //!
 //! Usage: orb spread|strongest COUNT IMAGE... ; prints per image a line "features N microseconds T" and N lines
-//! "x y octave w0 w1 w2 w3". The time is the process' own for one extraction, the best of five.
+//! "x y octave w0 w1 w2 w3". The time is that on the processor, the mean of several.
 #![allow(
     clippy::print_stdout,
     clippy::disallowed_methods,
     reason = "a measuring program"
 )]
 
+mod cpu_time;
+
 use std::error::Error;
 use std::time::Instant;
 
+use cpu_time::cpu_seconds;
 use edge_slam::feature::{OrbConfig, OrbExtractor, Selection};
 use edge_slam::sequence::decode_gray;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let origin = Instant::now();
     let mut arguments = std::env::args().skip(1);
     let selection = match arguments.next().as_deref() {
         Some("spread") => Selection::Spread,
@@ -29,17 +33,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     })?;
     for path in arguments {
         let image = decode_gray(&std::fs::read(path)?)?;
-        let mut best = f64::MAX;
         let mut found = extractor.extract(&image.view());
-        for _ in 0..5 {
-            let start = Instant::now();
+        let start = cpu_seconds(origin);
+        for _ in 0..10 {
             found = extractor.extract(&image.view());
-            best = best.min(start.elapsed().as_secs_f64());
         }
+        let mean = (cpu_seconds(origin) - start) / 10.0;
         println!(
             "features {} microseconds {:.0}",
             found.keypoints.len(),
-            best * 1e6
+            mean * 1e6
         );
         for (k, d) in found.keypoints.iter().zip(&found.descriptors) {
             println!(

@@ -86,7 +86,7 @@ impl DepthSource for OnnxDepth {
         let small = self.predict(grey)?;
         let (width, height) = (frame.image.width(), frame.image.height());
         let pick = |index: usize| {
-            crop.from_frame(index % width, index / width)
+            crop.covering(index % width, index / width)
                 .map_or(0.0, |(x, y)| small[y * SIDE + x])
         };
         DepthImage::new((0..width * height).map(pick).collect(), width, height).map(Some)
@@ -137,7 +137,7 @@ impl Crop {
         clippy::cast_sign_loss,
         reason = "checked first"
     )]
-    fn from_frame(&self, x: usize, y: usize) -> Option<(usize, usize)> {
+    fn covering(&self, x: usize, y: usize) -> Option<(usize, usize)> {
         let place = |start: f64, size: f64, k: usize| {
             let k = ((k as f64 + 0.5 - start) / size * SIDE as f64).floor();
             (k >= 0.0 && k < SIDE as f64).then_some(k as usize)
@@ -158,11 +158,11 @@ mod tests {
         let crop = Crop::of(640, 480);
         for (x, y) in [(0, 0), (100, 30), (223, 223)] {
             let (u, v) = crop.to_frame(x, y);
-            let back = crop.from_frame(u.round() as usize, v.round() as usize);
+            let back = crop.covering(u.round() as usize, v.round() as usize);
             assert_eq!(back, Some((x, y)));
         }
-        assert_eq!(crop.from_frame(0, 0), None);
-        assert!(Crop::of(1, 1).from_frame(0, 0).is_some());
+        assert_eq!(crop.covering(0, 0), None);
+        assert!(Crop::of(1, 1).covering(0, 0).is_some());
     }
 
     #[test]
