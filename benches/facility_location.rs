@@ -22,7 +22,7 @@ fn facility_location(criterion: &mut Criterion) {
         let points = Points::new(&points, Kernel::Linear { reach: 3.0 }).unwrap();
         let function = FacilityLocation::new(points);
         group.bench_function(BenchmarkId::new("bounded", n), |b| {
-            b.iter(|| function.greedy(20))
+            b.iter(|| function.greedy(20));
         });
         group.bench_function(BenchmarkId::new("lazy", n), |b| {
             b.iter(|| LazyGreedy::cardinality(20).maximize(&function));

@@ -1,5 +1,11 @@
 //! Overhead of the Tello session: one command with its reply, one state line, one stick set-point.
 
+#![allow(
+    missing_docs,
+    clippy::expect_used,
+    reason = "a benchmark says where it fails"
+)]
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::time::Duration;
@@ -20,16 +26,26 @@ fn tello_session(criterion: &mut Criterion) {
         bencher.iter(|| {
             // A second apart, so that nothing has to wait for copies of the last reply.
             now += Duration::from_secs(1);
-            session.request(now, Command::Query(Query::Battery)).expect("the queue is empty");
+            session
+                .request(now, Command::Query(Query::Battery))
+                .expect("the queue is empty");
             drain(&mut session);
-            session.handle_input(Input::Reply { at: now, origin, bytes: b"87\r\n" });
+            session.handle_input(Input::Reply {
+                at: now,
+                origin,
+                bytes: b"87\r\n",
+            });
             drain(&mut session);
         });
     });
     group.bench_function("state_line", |bencher| {
         bencher.iter(|| {
             now += Duration::from_millis(100);
-            session.handle_input(Input::State { at: now, origin, bytes: STATE });
+            session.handle_input(Input::State {
+                at: now,
+                origin,
+                bytes: STATE,
+            });
             drain(&mut session);
         });
     });

@@ -4,7 +4,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64;
 
 /// `count` points in textured patches on the walls of rooms of 4.2 x 3.6 x 2.6 m, metres.
-pub fn points(count: usize, seed: u64) -> Vec<[f64; 3]> {
+pub(crate) fn points(count: usize, seed: u64) -> Vec<[f64; 3]> {
     let mut rng = Pcg64::new(seed.into(), 1);
     let patches: Vec<([f64; 3], usize)> = (0..(count / 40).max(1))
         .map(|_| {
@@ -32,7 +32,7 @@ pub fn points(count: usize, seed: u64) -> Vec<[f64; 3]> {
 }
 
 /// `count` motions of this length inside the rooms.
-pub fn motions(count: usize, length: f64, seed: u64) -> Vec<([f64; 3], [f64; 3])> {
+pub(crate) fn motions(count: usize, length: f64, seed: u64) -> Vec<([f64; 3], [f64; 3])> {
     let mut rng = Pcg64::new(seed.into(), 1);
     (0..count)
         .map(|_| {

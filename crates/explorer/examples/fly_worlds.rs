@@ -1,5 +1,7 @@
 //! Flies missions in several worlds and prints a row for each: `cargo run --release -p explorer --example fly_worlds -- WORLD SEED RUNS`.
 
+#![allow(clippy::print_stdout, reason = "an example speaks to the terminal")]
+
 use explorer::{MissionConfig, SimulatedFlight};
 use indoor_sim::{SimConfig, World};
 
