@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Clients that were not written here fly the emulated drone. Installs them into a temporary folder.
-# Needs Rust, a C++ compiler, python3 with venv, and npm; a client whose installer is missing is skipped with a line that says so.
+# Needs Rust, a C++ compiler, python3 with venv, and npm. A client whose installer is missing, or whose package registry cannot be
+# reached, is skipped with a line that says so; any other failure fails the run.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 cd "$here/../.."
@@ -33,8 +34,33 @@ fly() {
     emulator=""
 }
 
-if python3 -m venv "$work/venv" 2>/dev/null; then
-    "$work/venv/bin/pip" install --quiet djitellopy==2.5.0 easytello==0.0.7 tello-asyncio==2.1.3 tellopy==0.7.0
+# What the installers say when the registry cannot be reached, rather than that a package is wrong.
+unreachable='NewConnectionError|ConnectTimeout|ReadTimeout|Read timed out|ConnectionReset|Connection refused|Connection broken'
+unreachable+='|Max retries exceeded|ProxyError|SSLError|name resolution|No route to host|Network is unreachable|Cannot connect to proxy'
+unreachable+='|ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ERR_SOCKET_TIMEOUT|ENETUNREACH|EHOSTUNREACH'
+
+# install NAME COUNT COMMAND...: 0 when installed; 1, and COUNT checks skipped, when its registry cannot be reached.
+install() {
+    local name="$1" count="$2"
+    shift 2
+    if timeout 600 "$@" >"$work/install.log" 2>&1; then
+        return 0
+    elif grep -aqiE "$unreachable" "$work/install.log"; then
+        skipped=$((skipped + count))
+        echo "$name: the package registry cannot be reached: $count checks skipped"
+    else
+        failed=$((failed + count))
+        echo "$name: FAILED to install"
+        tail -n 40 "$work/install.log"
+    fi
+    return 1
+}
+
+if ! python3 -m venv "$work/venv" >/dev/null 2>&1; then
+    skipped=$((skipped + 6))
+    echo "python3 venv is not available: six checks skipped"
+elif install "the Python clients" 6 "$work/venv/bin/pip" install --disable-pip-version-check \
+    djitellopy==2.5.0 easytello==0.0.7 tello-asyncio==2.1.3 tellopy==0.7.0; then
     for client in djitellopy djitellopy_video easytello tello_asyncio; do
         fly "$client" 2.0 fast "$work/venv/bin/python" "$here/fly_$client.py" "$address" "$port"
     done
@@ -43,16 +69,12 @@ if python3 -m venv "$work/venv" 2>/dev/null; then
     cargo build --quiet -p tello-sdk --example 04_binary_flight
     fly tellopy-fake-drone binary real "$work/venv/bin/python" "$here/serve_tellopy_fake.py" \
         "$(dirname "$binary")/04_binary_flight"
-else
-    skipped=$((skipped + 6))
-    echo "python3 venv is not available: six checks skipped"
 fi
-if command -v npm >/dev/null; then
-    npm install --silent --no-fund --no-audit --prefix "$work" tello-drone@3.0.4
-    fly tello-drone 2.0 fast node "$here/fly_tello_drone.js" "$address" "$port" "$work/node_modules"
-else
+if ! command -v npm >/dev/null; then
     skipped=$((skipped + 1))
     echo "npm is not available: one client skipped"
+elif install tello-drone 1 npm install --no-fund --no-audit --prefix "$work" tello-drone@3.0.4; then
+    fly tello-drone 2.0 fast node "$here/fly_tello_drone.js" "$address" "$port" "$work/node_modules"
 fi
 echo "clients: $passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]
