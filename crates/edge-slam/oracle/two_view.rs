@@ -19,7 +19,7 @@ use edge_slam::camera::{Camera, PinholeCamera, RadialTangential};
 use edge_slam::feature::{Features, MatchConfig, OrbConfig, OrbExtractor, match_descriptors};
 use edge_slam::nalgebra::{Matrix4, Point2};
 use edge_slam::sequence::decode_gray;
-use edge_slam::two_view::{TwoViewConfig, estimate_two_view};
+use edge_slam::two_view::{TwoView, TwoViewConfig, estimate_two_view};
 use rand::SeedableRng;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -70,27 +70,32 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let micros = (cpu_seconds(origin) - start) / 8.0 * 1e6;
         print!("pair {} microseconds {micros:.0} ", matches.len());
-        let motion = match found {
-            Ok(f) => {
-                let parallax = f.parallax.to_degrees();
-                println!(
-                    "geometry {:?} parallax {parallax:.3} homography {:.3} rotation {:.3}",
-                    f.geometry, f.homography_share, f.rotation_share
-                );
-                f.second_from_first.to_homogeneous()
-            }
-            Err(_) => {
-                println!("geometry None parallax 0 homography 0 rotation 0");
-                Matrix4::zeros()
-            }
-        };
-        let numbers: Vec<String> = (0..12)
-            .map(|k| format!("{:.9}", motion[(k / 4, k % 4)]))
-            .collect();
-        println!("{}", numbers.join(" "));
+        print_motion(found.ok().as_ref());
         for (p, q) in first.iter().zip(&second) {
             println!("{:.4} {:.4} {:.4} {:.4}", p.x, p.y, q.x, q.y);
         }
     }
     Ok(())
+}
+
+/// The rest of the pair's line, and the line of the motion.
+fn print_motion(found: Option<&TwoView>) {
+    let motion = match found {
+        Some(f) => {
+            let parallax = f.parallax.to_degrees();
+            println!(
+                "geometry {:?} parallax {parallax:.3} homography {:.3} rotation {:.3}",
+                f.geometry, f.homography_share, f.rotation_share
+            );
+            f.second_from_first.to_homogeneous()
+        }
+        None => {
+            println!("geometry None parallax 0 homography 0 rotation 0");
+            Matrix4::zeros()
+        }
+    };
+    let numbers: Vec<String> = (0..12)
+        .map(|k| format!("{:.9}", motion[(k / 4, k % 4)]))
+        .collect();
+    println!("{}", numbers.join(" "));
 }
