@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-/// E = [t]× R with x₂ᵀ E x₁ = 0, for the motion that takes points of the first camera to the second.
+/// `E = [t]× R` with x₂ᵀ E x₁ = 0, for the motion that takes points of the first camera to the second.
 #[must_use]
 pub fn essential_of(second_from_first: &Isometry3<f64>) -> Matrix3<f64> {
     let translation = second_from_first.translation.vector;
