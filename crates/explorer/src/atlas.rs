@@ -35,6 +35,8 @@ pub struct Portal {
     pub approaches: usize,
     /// Least distance from which the drone has looked at it.
     pub closest: f64,
+    /// Flights towards it that ended before they arrived.
+    pub failures: usize,
 }
 
 /// One place from which the drone looked all around.
@@ -110,6 +112,7 @@ impl Atlas {
                 state: PortalState::Unvisited,
                 approaches: 0,
                 closest: f64::INFINITY,
+                failures: 0,
             });
         }
         self.sites.push(Site {

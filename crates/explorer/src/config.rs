@@ -10,22 +10,35 @@ use submodular_minimax::OutlierConfig;
 pub struct MissionConfig {
     /// Radius of the drone's body, metres: 0.10 for a Tello with its propellers (98 x 93 mm, propellers beyond).
     pub drone_radius_m: f64,
-    /// Kept free around the body when planning, metres: covers heading and distance errors of a leg and the map's noise.
+    /// Kept free around the body when planning, metres, at least. The points' own noise thickens obstacles by 0.1 to 0.2 m
+    /// beyond this: with 0.12 half of the true doorways (0.9 m) close in the simulator, with 0.05 none.
     pub margin_m: f64,
+    /// Kept free around the body where there is room, metres: paths are planned with this first.
+    pub comfortable_margin_m: f64,
+    /// Error of the pose at the start of a leg, metres: about 1 % of the median range.
+    pub pose_error_m: f64,
+    /// How much farther off a leg ends a metre of its length: 3 degrees of heading (two standard deviations).
+    pub leg_error: f64,
     /// Flying height above the ground, metres.
     pub flight_height_m: f64,
     /// Space around the start that the operator keeps clear, metres: initialising and the triangle happen in it.
     pub start_bubble_m: f64,
-    /// Stops of a full turn, at least 3. Ten steps of 36 degrees overlap by a third in a 55 degree picture.
+    /// Stops of a full turn, at least 3. Seven steps of 51 degrees: a 55 degree picture leaves no gap, and each
+    /// command costs about two seconds of battery.
     pub scan_steps: usize,
     /// Climb between the stops, centimetres, 20..=500: the paper's "up and down".
     pub scan_climb_cm: i64,
     /// Side of the triangle flown to fit the plane (A, v), centimetres, 20..=500.
     pub triangle_cm: i64,
+    /// Cruising speed, centimetres per second, 10..=100.
+    pub speed_cm_per_s: u8,
     /// Longest straight leg without a new look at the pose, metres.
     pub longest_leg_m: f64,
-    /// Land at this charge, percent.
+    /// Land at this charge wherever the drone is, percent.
     pub battery_floor_percent: u8,
+    /// Charge kept for the way home beyond the floor, percent for each metre of straight distance: a metre costs about three
+    /// seconds at 0.13 percent a second, twice that for detours.
+    pub battery_percent_per_meter_home: f64,
     /// Land after this time.
     pub time_budget: Duration,
     /// Land after this many scans.
@@ -67,6 +80,14 @@ pub struct ExplorationConfig {
     pub least_progress_m: f64,
     /// Approaches to one exit at most.
     pub approaches: usize,
+    /// Flights towards one exit that may fail, for example because the pose was lost, before it counts as blocked.
+    pub failures: usize,
+    /// Without an exit left, places that no site saw are scanned if they are this far from every site, metres.
+    pub site_distance_m: f64,
+    /// Without anything unseen left, reachable places this far from every site are scanned too, metres.
+    pub far_distance_m: f64,
+    /// Smallest unseen area, square metres, that is worth a scan: slivers behind furniture are not.
+    pub least_unseen_m2: f64,
     /// Exits nearer than this to the flown path lead to known space, metres (reference: 0.75).
     pub known_distance_m: f64,
     /// Earlier sites see what lies this deep inside their profile, metres (reference: 0.3).
@@ -81,14 +102,19 @@ impl Default for MissionConfig {
     fn default() -> Self {
         Self {
             drone_radius_m: 0.10,
-            margin_m: 0.12,
+            margin_m: 0.05,
+            comfortable_margin_m: 0.15,
+            pose_error_m: 0.02,
+            leg_error: 0.06,
             flight_height_m: 1.0,
             start_bubble_m: 0.6,
-            scan_steps: 10,
+            scan_steps: 7,
             scan_climb_cm: 40,
             triangle_cm: 40,
-            longest_leg_m: 1.2,
-            battery_floor_percent: 15,
+            speed_cm_per_s: 70,
+            longest_leg_m: 2.0,
+            battery_floor_percent: 10,
+            battery_percent_per_meter_home: 0.8,
             time_budget: Duration::from_secs(12 * 60),
             scan_budget: 60,
             lost_patience: Duration::from_millis(800),
@@ -118,6 +144,10 @@ impl Default for ExplorationConfig {
             arrival_m: 0.35,
             least_progress_m: 0.4,
             approaches: 5,
+            failures: 3,
+            site_distance_m: 1.2,
+            far_distance_m: 1.8,
+            least_unseen_m2: 0.6,
             known_distance_m: 0.75,
             known_shrink_m: 0.3,
             rrt_iterations: 4000,
@@ -179,6 +209,13 @@ impl MissionConfig {
             500.0,
             "20..=500 cm",
         )?;
+        within(
+            "speed_cm_per_s",
+            f64::from(self.speed_cm_per_s),
+            10.0,
+            100.0,
+            "10..=100 cm/s",
+        )?;
         within("longest_leg_m", self.longest_leg_m, 0.2, 5.0, "0.2..=5 m")?;
         within(
             "battery_floor_percent",
@@ -194,48 +231,62 @@ impl MissionConfig {
             1e6,
             "1..=1000000",
         )?;
-        within("voxel_m", self.perception.voxel_m, 0.01, 1.0, "0.01..=1 m")?;
+        self.perception.validate()?;
+        self.exploration.validate()
+    }
+
+    /// Radius that must be free along a leg of `meters` that is about to be flown, metres: the body, the error of the pose and the
+    /// error that grows along the leg. Long legs need more room than short ones.
+    #[must_use]
+    pub fn flying_radius_m(&self, meters: f64) -> f64 {
+        self.drone_radius_m + self.pose_error_m + self.leg_error * meters.abs()
+    }
+
+    /// Radius that a planned motion keeps free, metres, at least.
+    #[must_use]
+    pub fn planning_radius_m(&self) -> f64 {
+        self.drone_radius_m + self.margin_m
+    }
+
+    /// Radii to plan with, metres, the widest first.
+    #[must_use]
+    pub fn planning_radii_m(&self) -> [f64; 3] {
+        let (least, most) = (self.margin_m, self.comfortable_margin_m.max(self.margin_m));
+        [most, 0.5 * (least + most), least].map(|margin| self.drone_radius_m + margin)
+    }
+}
+
+impl PerceptionConfig {
+    fn validate(&self) -> Result<(), ConfigError> {
+        within("voxel_m", self.voxel_m, 0.01, 1.0, "0.01..=1 m")?;
         within(
             "patch_half_angle",
-            self.perception.patch_half_angle,
+            self.patch_half_angle,
             0.0,
             0.2,
             "0..=0.2 rad",
         )?;
         within(
             "points_per_cluster",
-            self.perception.points_per_cluster as f64,
+            self.points_per_cluster as f64,
             1.0,
             1e6,
             "1..=1000000",
         )?;
         within(
             "largest_obstacle_m",
-            self.perception.largest_obstacle_m,
+            self.largest_obstacle_m,
             0.05,
             1e3,
             "0.05..=1000 m",
-        )?;
-        within(
-            "rrt_step_m",
-            self.exploration.rrt_step_m,
-            0.01,
-            100.0,
-            "0.01..=100 m",
-        )?;
-        within(
-            "height_band_m",
-            self.exploration.height_band_m,
-            0.0,
-            5.0,
-            "0..=5 m",
         )
     }
+}
 
-    /// Radius that a planned motion keeps free, metres.
-    #[must_use]
-    pub fn planning_radius_m(&self) -> f64 {
-        self.drone_radius_m + self.margin_m
+impl ExplorationConfig {
+    fn validate(&self) -> Result<(), ConfigError> {
+        within("rrt_step_m", self.rrt_step_m, 0.01, 100.0, "0.01..=100 m")?;
+        within("height_band_m", self.height_band_m, 0.0, 5.0, "0..=5 m")
     }
 }
 

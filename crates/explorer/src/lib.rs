@@ -8,6 +8,7 @@ mod mission;
 mod reach;
 mod route;
 mod scene;
+mod sight;
 mod simulation;
 mod stage;
 
@@ -22,5 +23,6 @@ pub use mission::{
 pub use reach::{Reach, ReachLimits};
 pub use route::Route;
 pub use scene::{Presence, Scene, SceneError};
+pub use sight::Sight;
 pub use simulation::{FlightSummary, SimulatedFlight, SimulationError};
 pub use stage::{Stage, StageObserver};

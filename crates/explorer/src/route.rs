@@ -34,35 +34,49 @@ impl Route {
             .sum()
     }
 
-    /// Plans from the flood's start to its place `index` for a ball of `radius` map units.
+    /// A path that needs no planning, refined for a ball of `radius`; all in map units, start first.
+    #[must_use]
+    pub fn along(scene: &Scene, raw: Vec<[f64; 3]>, radius: f64) -> Self {
+        let free =
+            |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
+        let path = Path::new(&raw).map_or_else(
+            |_| raw.clone(),
+            |path| refine::dag(&path, &free).path.into_points(),
+        );
+        Self {
+            raw,
+            path,
+            by_tree: false,
+        }
+    }
+
+    /// Plans from the flood's start to its place `index` for a ball of the widest of `radii` (map units, descending) that finds
+    /// a way; the flood must have been made with the last of them.
     pub fn plan(
         scene: &Scene,
         reach: &Reach,
         index: usize,
-        radius: f64,
+        radii: &[f64],
         config: &ExplorationConfig,
         rng: &mut impl Rng,
         stages: &mut dyn StageObserver,
     ) -> Option<Self> {
-        let free =
-            |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
         let flooded: Vec<[f64; 3]> = reach.path_to(index).into_iter().map(Into::into).collect();
-        let (start, goal) = (*flooded.first()?, *flooded.last()?);
-        let planned = staged(stages, Stage::Plan, || {
-            let corners: Vec<[f64; 3]> = reach.positions().map(Into::into).collect();
-            let bounds = Bounds::around(&corners, scene.units(config.rrt_step_m)).ok()?;
-            let settings = RrtConfig {
-                step_length: scene.units(config.rrt_step_m),
-                max_iterations: config.rrt_iterations,
-                ..RrtConfig::default()
-            };
-            rrt(start, goal, &bounds, &free, &settings, rng).ok()?.path
+        let least = *radii.last()?;
+        let (tree, radius) = staged(stages, Stage::Plan, || {
+            let grown = radii.iter().find_map(|&radius| {
+                let path = grow(scene, reach, &flooded, radius, config, rng)?;
+                Some((Some(path), radius))
+            });
+            grown.unwrap_or((None, least))
         });
-        let by_tree = planned.is_some();
-        let raw = match planned {
+        let by_tree = tree.is_some();
+        let raw = match tree {
             Some(path) => path,
             None => Path::new(&flooded).ok()?,
         };
+        let free =
+            |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
         let refined = staged(stages, Stage::Refine, || refine::dag(&raw, &free));
         Some(Self {
             raw: raw.into_points(),
@@ -70,4 +84,34 @@ impl Route {
             by_tree,
         })
     }
+}
+
+/// One tree from the first to the last of the flooded places, for one radius.
+fn grow(
+    scene: &Scene,
+    reach: &Reach,
+    flooded: &[[f64; 3]],
+    radius: f64,
+    config: &ExplorationConfig,
+    rng: &mut impl Rng,
+) -> Option<Path<3>> {
+    let free =
+        |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
+    let corners: Vec<[f64; 3]> = reach.positions().map(Into::into).collect();
+    let bounds = Bounds::around(&corners, scene.units(config.rrt_step_m)).ok()?;
+    let settings = RrtConfig {
+        step_length: scene.units(config.rrt_step_m),
+        max_iterations: config.rrt_iterations,
+        ..RrtConfig::default()
+    };
+    rrt(
+        *flooded.first()?,
+        *flooded.last()?,
+        &bounds,
+        &free,
+        &settings,
+        rng,
+    )
+    .ok()?
+    .path
 }

@@ -21,6 +21,7 @@ use submodular_minimax::{OutlierError, Views, ViewsError, remove_outliers};
 
 use crate::config::{MissionConfig, PerceptionConfig};
 use crate::heading::LevelPose;
+use crate::sight::Sight;
 use crate::stage::{Stage, StageObserver, staged};
 
 /// What one look at a map yields. All coordinates in map units.
@@ -36,6 +37,8 @@ pub struct Scene {
     pub obstacles: ObstacleSet,
     /// The space that rays have proven free.
     pub free: FreeSpace,
+    /// Which points the camera sees from where.
+    pub sight: Sight,
     /// Metres per map unit.
     pub meters_per_unit: f64,
 }
@@ -123,8 +126,10 @@ impl Scene {
         let obstacles = staged(stages, Stage::Obstacles, || {
             obstacles(&solid, meters_per_unit, perception, rng)
         })?;
+        let sight = Sight::new(map, &removal.kept);
         Ok(Self {
             points,
+            sight,
             kept: removal.kept,
             removed: removal.removed,
             obstacles,

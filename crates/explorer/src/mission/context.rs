@@ -1,6 +1,8 @@
 //! What all phases share: the configuration, what is known, the explored places, and the record.
 
-use nalgebra::{Point3, Vector3};
+use std::sync::Arc;
+
+use nalgebra::Point3;
 use rand_pcg::Pcg64;
 
 use super::event::{Event, Logged};
@@ -16,6 +18,7 @@ use crate::config::MissionConfig;
 use crate::scene::Scene;
 use crate::stage::StageObserver;
 use slam_bridge::Map;
+use tello_sdk::Command;
 
 /// Everything that outlives a phase.
 pub(super) struct Shared {
@@ -25,12 +28,18 @@ pub(super) struct Shared {
     pub(super) atlas: Atlas,
     /// Epoch that the atlas and the scene belong to.
     pub(super) epoch: Option<u64>,
-    pub(super) scene: Option<Scene>,
+    pub(super) scene: Option<Arc<Scene>>,
     pub(super) map: Option<Map>,
     pub(super) last: Option<Finished>,
     /// Failures of commands in a row.
     pub(super) failures: usize,
     pub(super) scans: Vec<Scan>,
+    /// Places that no site had seen and that a flight was planned to, map units.
+    pub(super) tried: Vec<Point3<f64>>,
+    /// Why the drone is on its way home, if it is.
+    pub(super) homing: Option<Outcome>,
+    /// Flights home so far.
+    pub(super) home_flights: usize,
     pub(super) triangle_flown: Option<u64>,
     pub(super) cycles: Vec<Cycle>,
     pub(super) log: Vec<Logged>,
@@ -67,12 +76,69 @@ impl Shared {
         self.last.as_ref().map(|finished| &finished.outcome)
     }
 
+    /// The turn that undoes the last command, if that was a turn: the view before it was known.
+    pub(super) fn turn_back(&self) -> Option<Command> {
+        match self.last.as_ref()?.command {
+            Command::Clockwise(turn) => Some(Command::CounterClockwise(turn)),
+            Command::CounterClockwise(turn) => Some(Command::Clockwise(turn)),
+            _ => None,
+        }
+    }
+
     pub(super) fn set_outcome(&mut self, outcome: Outcome) {
         self.outcome = Some(outcome);
     }
 
     pub(super) fn land(&self, outcome: Outcome) -> Step {
         Step::Become(Phase::Land(Landing::new(outcome)))
+    }
+
+    /// Above the place where the drone was first tracked in this epoch, at its present height, map units: in the first epoch, above
+    /// the place where it took off.
+    pub(super) fn home(&self) -> Option<Point3<f64>> {
+        let (epoch, here) = self.knowledge.tracked_position()?;
+        let first = self
+            .knowledge
+            .trail()
+            .iter()
+            .find(|frame| frame.epoch == epoch)?;
+        let first = Point3::from(first.world_from_camera.translation.vector);
+        let up = self.knowledge.up();
+        Some(first + up * up.dot(&(here - first)))
+    }
+
+    /// Charge that the way home costs, percent.
+    pub(super) fn charge_home(&self) -> f64 {
+        let (Some(home), Some((_, here)), Some(scale)) = (
+            self.home(),
+            self.knowledge.tracked_position(),
+            self.knowledge.meters_per_unit(),
+        ) else {
+            return 0.0;
+        };
+        (here - home).norm() * scale * self.config.battery_percent_per_meter_home
+    }
+
+    /// The flown path backwards, thinned to a quarter of a metre, map units.
+    pub(super) fn way_came(&self, scene: &Scene) -> Vec<[f64; 3]> {
+        let epoch = self.knowledge.epoch();
+        let mut way: Vec<[f64; 3]> = Vec::new();
+        for frame in self
+            .knowledge
+            .trail()
+            .iter()
+            .rev()
+            .filter(|frame| frame.epoch == epoch)
+        {
+            let place = Point3::from(frame.world_from_camera.translation.vector);
+            let near = way
+                .last()
+                .is_some_and(|&last| (place - Point3::from(last)).norm() < scene.units(0.25));
+            if !near {
+                way.push(place.into());
+            }
+        }
+        way
     }
 
     /// Notes where this scan happens; a new epoch voids everything that was explored before.
@@ -89,6 +155,7 @@ impl Shared {
         let epoch = self.knowledge.epoch();
         if self.epoch.is_some_and(|known| known != epoch) {
             self.atlas = Atlas::default();
+            self.tried.clear();
             self.scene = None;
         }
         self.epoch = Some(epoch);
@@ -104,21 +171,17 @@ impl Shared {
         Phase::Triangle(Maneuver::triangle(self.config.triangle_cm))
     }
 
-    /// Whether the drone may climb by `meters`: within the start bubble before there is a scene, proven free afterwards.
+    /// Whether the drone may climb by `meters` (negative: sink): within the start bubble before there is a scene, proven free
+    /// afterwards.
     pub(super) fn vertical_is_free(&self, meters: f64) -> bool {
         let Some(scene) = &self.scene else {
-            return meters <= self.config.start_bubble_m;
+            return meters > 0.0 && meters <= self.config.start_bubble_m;
         };
         let Some(pose) = self.knowledge.pose() else {
             return false;
         };
-        let radius = self.config.planning_radius_m();
-        let top: Point3<f64> = pose.position + pose.up * scene.units(meters);
-        scene.motion_is_free(&pose.position, &top, scene.units(radius))
-    }
-
-    /// Displacement of `meters` along `direction` in map units, with the latest scale.
-    pub(super) fn in_units(&self, direction: Vector3<f64>, meters: f64) -> Option<Vector3<f64>> {
-        Some(direction * (meters / self.knowledge.meters_per_unit()?))
+        let radius = scene.units(self.config.flying_radius_m(meters));
+        let end: Point3<f64> = pose.position + pose.up * scene.units(meters);
+        scene.motion_is_free(&pose.position, &end, radius)
     }
 }

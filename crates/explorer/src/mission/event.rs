@@ -54,6 +54,10 @@ pub enum Goal {
     Approach,
     /// Back to a place from which an exit was left unvisited.
     Return,
+    /// To a reachable place that no scan has seen.
+    Unseen,
+    /// Back to where the drone took off.
+    Home,
 }
 
 /// An event and when it happened.
@@ -83,6 +87,8 @@ impl fmt::Display for Event {
                     Goal::Through => "through an exit",
                     Goal::Approach => "nearer to an exit",
                     Goal::Return => "back to an unvisited exit",
+                    Goal::Home => "home",
+                    Goal::Unseen => "to a place that no scan has seen",
                 };
                 write!(f, "flying {meters:.1} m {what}")
             }

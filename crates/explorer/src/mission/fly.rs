@@ -2,22 +2,28 @@
 
 use core::f64::consts::PI;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use tello_sdk::{Command, Distance, Speed, Waypoint};
 
 use super::context::Context;
+use super::facing::{COMFORTABLE, Facing};
 use super::maneuver::turn;
+use super::outcome::Outcome;
 use super::phase::{Phase, Step};
 use super::recover::Recover;
 use super::scan::Scan;
 use super::think::Think;
+use crate::atlas::PortalState;
 use crate::heading::LevelPose;
 use crate::route::Route;
+use crate::scene::Scene;
 
 /// The drone cannot move by less.
 const SHORTEST_MOVE_M: f64 = 0.20;
-/// Turns below this are not worth flying, radians: the drone's own heading error is of that size.
-const HEADING_TOLERANCE: f64 = 3.0 * PI / 180.0;
+/// Turns below this are not worth their two seconds, radians: legs are short and checked along the real heading.
+const HEADING_TOLERANCE: f64 = 8.0 * PI / 180.0;
+/// The same where a leg is free only along its exact heading.
+const EXACT_HEADING: f64 = 2.0 * PI / 180.0;
 /// A waypoint counts as reached within this distance, metres: under the shortest move.
 const REACHED_M: f64 = 0.15;
 /// Moves on one path at most; more means that the drone makes no headway.
@@ -25,13 +31,25 @@ const MOST_MOVES: usize = 60;
 /// Speed of slanted legs, centimetres per second.
 const GO_SPEED_CM_S: i64 = 40;
 
+/// Steps in which a look is turned less far.
+const LOOK_SHARES: u32 = 8;
+/// Shares of a leg that are tried, the whole first: shorter ones need less room.
+const LEG_SHARES: [f64; 4] = [1.0, 0.66, 0.4, 0.2];
+
 /// What to do at the end of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Arrival {
-    /// Turn on the spot: a new site.
-    Site,
-    /// Look at this place, map units.
-    LookAt(Point3<f64>),
+    /// Land.
+    Home,
+    /// Turn on the spot: a new site. The portal that was flown through, if any.
+    Site(Option<usize>),
+    /// Look at the place behind this portal, which then is this many map units away.
+    Look {
+        /// Index of the portal.
+        portal: usize,
+        /// Distance left, map units.
+        left: f64,
+    },
 }
 
 #[derive(Debug)]
@@ -39,8 +57,10 @@ pub(super) struct Fly {
     waypoints: Vec<Point3<f64>>,
     next: usize,
     moves: usize,
-    /// Whether the turn for the present leg was made.
-    turned: bool,
+    /// Whether the present leg needs an exact heading.
+    exact: bool,
+    /// How the present leg is flown, once the turn for it was made.
+    facing: Option<Facing>,
     arrival: Arrival,
 }
 
@@ -56,7 +76,8 @@ impl Fly {
             waypoints,
             next: 0,
             moves: 0,
-            turned: false,
+            exact: false,
+            facing: None,
             arrival,
         }
     }
@@ -66,7 +87,7 @@ impl Fly {
             return if context.knowledge.untracked_for() < context.config.lost_patience {
                 Step::Wait
             } else {
-                Step::Become(Phase::Recover(Recover::in_place()))
+                Step::Become(Phase::Recover(Recover::new(context.turn_back())))
             };
         };
         let Some(meters_per_unit) = context.knowledge.meters_per_unit() else {
@@ -76,7 +97,7 @@ impl Fly {
             let delta = pose.body_displacement(&target) * meters_per_unit;
             if delta.norm() < REACHED_M || !is_flyable(&delta) {
                 self.next += 1;
-                self.turned = false;
+                self.facing = None;
                 continue;
             }
             return self.toward(context, &pose, &delta);
@@ -87,43 +108,90 @@ impl Fly {
     /// One turn or one straight move towards a waypoint `delta` metres (forward, left, up) away.
     fn toward(&mut self, context: &Context<'_>, pose: &LevelPose, delta: &Vector3<f64>) -> Step {
         self.moves += 1;
-        if self.moves > MOST_MOVES {
+        let Some(scene) = context.scene.as_ref().filter(|_| self.moves <= MOST_MOVES) else {
             return Step::Become(Phase::Think(Think::again()));
-        }
+        };
         let level = delta.xy().norm();
         let angle = delta.y.atan2(delta.x);
-        if !self.turned && level >= SHORTEST_MOVE_M && angle.abs() > HEADING_TOLERANCE {
-            self.turned = true;
-            if let Some(command) = turn(angle) {
+        let longest = context.config.longest_leg_m;
+        let facing = match self.facing {
+            Some(facing) => facing,
+            None => Facing::choose(scene, pose, angle, scene.units(level.min(longest))),
+        };
+        let error = wrap(angle - facing.bearing());
+        let tolerance = if self.exact {
+            EXACT_HEADING
+        } else {
+            HEADING_TOLERANCE
+        };
+        if self.facing.is_none() && level >= SHORTEST_MOVE_M && error.abs() > tolerance {
+            self.facing = Some(facing);
+            if let Some(command) = turn(error) {
                 return Step::Send(command);
             }
         }
-        self.turned = false;
-        let Some((command, flown)) = straight(delta, context.config.longest_leg_m) else {
-            self.next += 1;
-            return Step::Wait;
-        };
-        if !move_is_free(context, pose, &flown) {
-            return Step::Become(Phase::Think(Think::again()));
+        match longest_free_leg(context, scene, pose, delta, facing) {
+            Some(command) => {
+                self.facing = None;
+                self.exact = false;
+                Step::Send(command)
+            }
+            // The same leg may be free when the drone heads straight along it.
+            None if !self.exact => {
+                self.facing = None;
+                self.exact = true;
+                Step::Wait
+            }
+            None => Step::Become(Phase::Think(Think::again())),
         }
-        Step::Send(command)
     }
 
     fn arrive(&self, context: &mut Context<'_>, pose: &LevelPose) -> Step {
         match self.arrival {
-            Arrival::Site => {
-                if let Some(arrival) =
-                    context.in_units(pose.up, context.config.exploration.arrival_m)
-                {
-                    context.atlas.arrive(&pose.position, arrival.norm());
+            Arrival::Home => context.land(context.homing.clone().unwrap_or(Outcome::Explored)),
+            Arrival::Site(portal) => {
+                if let Some(portal) = portal.and_then(|index| context.atlas.portal_mut(index)) {
+                    portal.state = PortalState::Traversed;
                 }
                 Step::Become(Phase::Scan(Scan::full(context)))
             }
-            Arrival::LookAt(target) => {
-                Step::Become(Phase::Scan(Scan::look(context, pose.turn_to(&target))))
-            }
+            Arrival::Look { portal, left } => look_at(context, pose, portal, left)
+                .unwrap_or_else(|| Step::Become(Phase::Think(Think::again()))),
         }
     }
+}
+
+/// Looks at the place behind a portal from here, `left` map units away, and notes that it did; `None` when there is nothing to
+/// turn to and no room to climb, so that a look would show nothing new.
+pub(super) fn look_at(
+    context: &mut Context<'_>,
+    pose: &LevelPose,
+    portal: usize,
+    left: f64,
+) -> Option<Step> {
+    let portal = context.atlas.portal_mut(portal)?;
+    portal.approaches += 1;
+    portal.closest = portal.closest.min(left);
+    let towards = pose.turn_to(&portal.through);
+    let towards = context
+        .scene
+        .as_ref()
+        .map_or(towards, |scene| tracked_turn(scene, pose, towards));
+    let look = Scan::look(context, towards)?;
+    Some(Step::Become(Phase::Scan(look)))
+}
+
+/// As much of a turn as keeps known points in view: what SLAM has never seen it cannot hold on to.
+fn tracked_turn(scene: &Scene, pose: &LevelPose, turn: f64) -> f64 {
+    let axis = Unit::new_normalize(pose.up);
+    let shares = (0..=LOOK_SHARES)
+        .rev()
+        .map(|share| turn * f64::from(share) / f64::from(LOOK_SHARES));
+    let mut turns = shares.filter(|&turn| {
+        let forward = Rotation3::from_axis_angle(&axis, turn) * pose.forward;
+        scene.sight.expected(&pose.position, &forward, &pose.up) >= COMFORTABLE
+    });
+    turns.next().unwrap_or(0.0)
 }
 
 fn is_flyable(delta: &Vector3<f64>) -> bool {
@@ -131,16 +199,16 @@ fn is_flyable(delta: &Vector3<f64>) -> bool {
 }
 
 /// The command that flies towards `delta` metres, at most `longest`, and what it flies (forward, left, up).
-fn straight(delta: &Vector3<f64>, longest: f64) -> Option<(Command, Vector3<f64>)> {
+fn straight(delta: &Vector3<f64>, facing: Facing, longest: f64) -> Option<(Command, Vector3<f64>)> {
     let level = delta.xy().norm();
     if delta.z.abs() < SHORTEST_MOVE_M {
         let meters = level.min(longest);
         return Some((
-            Command::Forward(Distance::from_meters(meters).ok()?),
-            Vector3::new(meters, 0.0, 0.0),
+            facing.command(Distance::from_meters(meters).ok()?),
+            facing.axis() * meters,
         ));
     }
-    if level < SHORTEST_MOVE_M {
+    if level < SHORTEST_MOVE_M || facing != Facing::Ahead {
         let meters = Distance::from_meters(delta.z.abs().min(longest)).ok()?;
         let command = if delta.z > 0.0 {
             Command::Up(meters)
@@ -164,13 +232,29 @@ fn straight(delta: &Vector3<f64>, longest: f64) -> Option<(Command, Vector3<f64>
     Some((Command::Go { to, speed }, flown))
 }
 
-/// Whether the move that is about to be flown, from where the drone really is and along its real heading, lies in proven-free
-/// space: the body with half of the margin, since the other half is what position and heading errors may use up.
-fn move_is_free(context: &Context<'_>, pose: &LevelPose, flown: &Vector3<f64>) -> bool {
-    let Some(scene) = &context.scene else {
-        return false;
-    };
-    let radius = scene.units(context.config.drone_radius_m + 0.5 * context.config.margin_m);
-    let end = pose.position + pose.forward * scene.units(flown.x) + pose.up * scene.units(flown.z);
-    scene.motion_is_free(&pose.position, &end, radius)
+/// The longest move towards `delta` metres that, from where the drone really is and along its real heading, lies in proven-free
+/// space with room for the errors that grow along it.
+fn longest_free_leg(
+    context: &Context<'_>,
+    scene: &Scene,
+    pose: &LevelPose,
+    delta: &Vector3<f64>,
+    facing: Facing,
+) -> Option<Command> {
+    let longest = context.config.longest_leg_m.min(delta.norm());
+    LEG_SHARES.iter().find_map(|share| {
+        let length = (longest * share).max(SHORTEST_MOVE_M);
+        let (command, flown) = straight(delta, facing, length)?;
+        let radius = scene.units(context.config.flying_radius_m(flown.norm()));
+        let offset = pose.forward * flown.x + pose.left() * flown.y + pose.up * flown.z;
+        let end = pose.position + offset / scene.meters_per_unit;
+        scene
+            .motion_is_free(&pose.position, &end, radius)
+            .then_some(command)
+    })
+}
+
+/// An angle in (−π, π].
+fn wrap(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
 }

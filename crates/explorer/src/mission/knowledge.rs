@@ -41,7 +41,7 @@ impl Knowledge {
         slam: Option<&SlamUpdate>,
     ) {
         self.now = self.now.max(now);
-        self.telemetry = telemetry.clone();
+        self.telemetry = *telemetry;
         if let Some(update) = slam {
             self.observe_slam(update);
         }

@@ -8,8 +8,10 @@
 //! (A, v), clean, find the exit, build obstacles, plan, refine, fly, repeat; land when no exit is left, when the
 //! battery is low, when time is up, or when the pose is lost for good.
 
+mod choice;
 mod context;
 mod event;
+mod facing;
 mod fly;
 mod initialize;
 mod knowledge;
@@ -46,6 +48,7 @@ use pilot::Pilot;
 pub use record::{Cycle, MissionRecord, Scan};
 use recover::Recover;
 use take_off::TakeOff;
+use think::Think;
 
 /// Commands that fail in a row before the mission gives up and lands.
 const MOST_FAILURES: usize = 6;
@@ -108,6 +111,9 @@ impl Mission {
             last: None,
             failures: 0,
             scans: Vec::new(),
+            tried: Vec::new(),
+            homing: None,
+            home_flights: 0,
             triangle_flown: None,
             cycles: Vec::new(),
             log: Vec::new(),
@@ -184,7 +190,8 @@ impl Mission {
             outcome: self.shared.outcome.as_ref(),
             scans: &self.shared.scans,
             cycles: &self.shared.cycles,
-            scene: self.shared.scene.as_ref(),
+            atlas: &self.shared.atlas,
+            scene: self.shared.scene.as_deref(),
             trail: self.shared.knowledge.trail(),
             meters_per_unit: self.shared.knowledge.meters_per_unit(),
             up: self.shared.knowledge.up().into(),
@@ -192,26 +199,32 @@ impl Mission {
         }
     }
 
-    /// Battery, time and a drone that keeps failing: all end in a landing.
+    /// Battery, time and a drone that keeps failing. The first two send it home while there is charge for that; the rest lands.
     fn watch(&mut self) {
         if !self.phase.is_airborne() {
             return;
         }
         let shared = &self.shared;
         let battery = shared.knowledge.battery_percent();
-        let outcome =
-            if let Some(percent) = battery.filter(|&p| p <= shared.config.battery_floor_percent) {
-                Outcome::BatteryLow { percent }
-            } else if shared.knowledge.now() > shared.config.time_budget {
-                Outcome::OutOfTime
-            } else if shared.failures >= MOST_FAILURES {
-                Outcome::DroneFailed {
-                    answer: last_answer(shared),
-                }
-            } else {
-                return;
-            };
-        self.begin_landing(outcome);
+        if shared.failures >= MOST_FAILURES {
+            let answer = last_answer(shared);
+            return self.begin_landing(Outcome::DroneFailed { answer });
+        }
+        if let Some(percent) = battery.filter(|&p| p <= shared.config.battery_floor_percent) {
+            return self.begin_landing(Outcome::BatteryLow { percent });
+        }
+        if shared.homing.is_some() {
+            return;
+        }
+        let reserve = f64::from(shared.config.battery_floor_percent) + shared.charge_home();
+        let outcome = match battery {
+            Some(percent) if f64::from(percent) <= reserve => Outcome::BatteryLow { percent },
+            _ if shared.knowledge.now() > shared.config.time_budget => Outcome::OutOfTime,
+            _ => return,
+        };
+        // The move in flight ends first; then the way home is planned.
+        self.shared.homing = Some(outcome);
+        self.phase = Phase::Think(Think::again());
     }
 
     fn begin_landing(&mut self, outcome: Outcome) {
@@ -231,9 +244,9 @@ impl Mission {
             return None;
         }
         let moving = self.pilot.is_moving();
-        let flown_cm = self.pilot.flown_cm(self.shared.knowledge.now());
+        let way_back = self.pilot.way_back(self.shared.knowledge.now());
         self.shared.log(Event::Lost);
-        self.phase = Phase::Recover(flown_cm.map_or_else(Recover::in_place, Recover::on_leg));
+        self.phase = Phase::Recover(Recover::new(way_back));
         if !moving {
             return None;
         }

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use nalgebra::{Point3, Vector3};
-use tello_sdk::Command;
+use tello_sdk::{Command, Distance};
 
 use super::knowledge::Knowledge;
 
@@ -19,7 +19,7 @@ pub enum CommandOutcome {
 }
 
 /// Time that SLAM needs after a move until its pose counts: frames come at about 10 Hz.
-const SETTLE: Duration = Duration::from_millis(400);
+const SETTLE: Duration = Duration::from_millis(300);
 
 /// Time from a command to the first movement, seconds (0.3 to 0.4 were seen).
 const REACTION_S: f64 = 0.35;
@@ -101,18 +101,24 @@ impl Pilot {
         }
     }
 
-    /// About how much of a forward leg has been flown, centimetres, rounded down; `None` when no such leg is in flight.
-    pub(super) fn flown_cm(&self, now: Duration) -> Option<i64> {
+    /// The way back along the part of a level leg that has been flown so far, or of a turn; `None` when no such
+    /// leg is in flight, or too little of it was flown.
+    pub(super) fn way_back(&self, now: Duration) -> Option<Command> {
         let State::InFlight(flight) = &self.state else {
             return None;
         };
-        let commanded = displacement(&flight.command);
-        if commanded.x <= 0.0 || commanded.x < commanded.z.abs() {
-            return None;
-        }
         let seconds = now.saturating_sub(flight.since).as_secs_f64();
-        let flown = (CRUISE_M_PER_S * (seconds - REACTION_S)).clamp(0.0, commanded.x);
-        Some((flown * 100.0).floor() as i64)
+        let cruised = (CRUISE_M_PER_S * (seconds - REACTION_S)).max(0.0);
+        let flown = |leg: Distance| Distance::from_meters(cruised.min(leg.meters())).ok();
+        match flight.command {
+            Command::Forward(leg) => flown(leg).map(Command::Back),
+            Command::Back(leg) => flown(leg).map(Command::Forward),
+            Command::Left(leg) => flown(leg).map(Command::Right),
+            Command::Right(leg) => flown(leg).map(Command::Left),
+            Command::Clockwise(turn) => Some(Command::CounterClockwise(turn)),
+            Command::CounterClockwise(turn) => Some(Command::Clockwise(turn)),
+            _ => None,
+        }
     }
 
     /// Forgets the command in flight: something more urgent goes out.

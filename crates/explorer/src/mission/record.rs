@@ -8,6 +8,7 @@ use nalgebra::Point3;
 use super::event::{Goal, Logged};
 use super::knowledge::TrailPose;
 use super::outcome::Outcome;
+use crate::atlas::Atlas;
 use crate::scene::Scene;
 
 /// One turn on the spot.
@@ -49,6 +50,8 @@ pub struct MissionRecord<'a> {
     pub scans: &'a [Scan],
     /// All cycles, oldest first.
     pub cycles: &'a [Cycle],
+    /// Sites and exits of the present epoch.
+    pub atlas: &'a Atlas,
     /// The last scene.
     pub scene: Option<&'a Scene>,
     /// Every tracked frame.

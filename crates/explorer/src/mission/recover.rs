@@ -5,13 +5,14 @@ use core::time::Duration;
 
 use super::context::Context;
 use super::event::Event;
-use super::maneuver::{back, climb, turn};
+use super::maneuver::{climb, turn};
 use super::outcome::Outcome;
 use super::phase::{Phase, Step};
 use super::think::Think;
+use tello_sdk::Command;
 
 /// How long to hover before doing anything: a pose is often back after a few frames.
-const PATIENCE: Duration = Duration::from_millis(1500);
+const PATIENCE: Duration = Duration::from_millis(800);
 /// Step of the look around, radians.
 const LOOK: f64 = TAU / 12.0;
 /// A full look around at each of two heights.
@@ -19,27 +20,24 @@ const LOOKS: usize = 24;
 
 #[derive(Debug)]
 pub(super) struct Recover {
-    /// Length of the leg that was being flown, centimetres: it is known to be free.
-    retreat_cm: Option<i64>,
+    /// Back along the leg that was being flown: it is known to be free.
+    way_back: Option<Command>,
     began: Option<Duration>,
     looks: usize,
 }
 
 impl Recover {
-    /// After losing the pose while turning on the spot.
+    /// After losing the pose on the spot.
     pub(super) fn in_place() -> Self {
-        Self {
-            retreat_cm: None,
-            began: None,
-            looks: 0,
-        }
+        Self::new(None)
     }
 
-    /// After losing the pose on a forward leg of which about `flown_cm` were flown.
-    pub(super) fn on_leg(flown_cm: i64) -> Self {
+    /// After losing the pose on a leg with this way back, if any.
+    pub(super) fn new(way_back: Option<Command>) -> Self {
         Self {
-            retreat_cm: Some(flown_cm),
-            ..Self::in_place()
+            way_back,
+            began: None,
+            looks: 0,
         }
     }
 
@@ -53,7 +51,7 @@ impl Recover {
         if now < began + PATIENCE {
             return Step::Wait;
         }
-        if let Some(command) = self.retreat_cm.take().and_then(back) {
+        if let Some(command) = self.way_back.take() {
             return Step::Send(command);
         }
         if self.looks == LOOKS {

@@ -10,6 +10,12 @@ use super::recover::Recover;
 use super::think::Think;
 use tello_sdk::Command;
 
+/// The drone cannot climb by less.
+const SHORTEST_CLIMB_CM: i64 = 20;
+
+/// Turns below this show nothing new, radians.
+const SMALLEST_LOOK: f64 = 0.15;
+
 /// A turn in steps, a climb or a descent after each.
 #[derive(Debug)]
 pub(super) struct Scan {
@@ -17,7 +23,8 @@ pub(super) struct Scan {
     /// Turns still to be made, radians, counterclockwise positive; last one first.
     turns: Vec<f64>,
     climb_next: bool,
-    raised: bool,
+    /// How far above the flying height the drone is now, centimetres.
+    raised: Option<i64>,
     started: bool,
 }
 
@@ -36,10 +43,12 @@ impl Scan {
         Self::new(Purpose::Site, vec![TAU / steps as f64; steps])
     }
 
-    /// A look around the direction that is `towards` radians from the present heading.
-    pub(super) fn look(context: &Context<'_>, towards: f64) -> Self {
-        let step = TAU / context.config.scan_steps.max(3) as f64;
-        Self::new(Purpose::Look, vec![step, step, towards - step])
+    /// A look, from two heights, in the direction that is `towards` radians from the present heading; `None` when that is where the
+    /// drone looks already and there is no room to climb.
+    pub(super) fn look(context: &Context<'_>, towards: f64) -> Option<Self> {
+        let turns = towards.abs() >= SMALLEST_LOOK;
+        let climbs = free_climb(context).is_some();
+        (turns || climbs).then(|| Self::new(Purpose::Look, vec![towards]))
     }
 
     fn new(purpose: Purpose, turns: Vec<f64>) -> Self {
@@ -47,7 +56,7 @@ impl Scan {
             purpose,
             turns,
             climb_next: false,
-            raised: false,
+            raised: None,
             started: false,
         }
     }
@@ -78,27 +87,22 @@ impl Scan {
         }
     }
 
-    /// Up, then down again at the next stop, where the space above is known to be free.
+    /// Away from the flying height, then back to it at the next stop; only where the space is known to be free.
     fn climb(&mut self, context: &Context<'_>) -> Option<Command> {
-        if self.raised {
-            self.raised = false;
-            return climb(-context.config.scan_climb_cm);
+        if let Some(centimeters) = self.raised.take() {
+            return climb(-centimeters);
         }
-        let meters = context.config.scan_climb_cm as f64 / 100.0;
-        if !context.vertical_is_free(meters) {
-            return None;
-        }
-        self.raised = true;
-        climb(context.config.scan_climb_cm)
+        let chosen = free_climb(context)?;
+        self.raised = Some(chosen);
+        climb(chosen)
     }
 
     fn end(&mut self, context: &mut Context<'_>) -> Step {
-        if self.raised {
-            self.raised = false;
-            return climb(-context.config.scan_climb_cm).map_or(Step::Wait, Step::Send);
+        if let Some(centimeters) = self.raised.take() {
+            return climb(-centimeters).map_or(Step::Wait, Step::Send);
         }
         if !context.knowledge.is_tracking() {
-            return Step::Become(Phase::Recover(Recover::in_place()));
+            return Step::Become(Phase::Recover(Recover::new(context.turn_back())));
         }
         match self.purpose {
             Purpose::Site if context.needs_triangle() => Step::Become(context.triangle()),
@@ -106,4 +110,22 @@ impl Scan {
             Purpose::Look => Step::Become(Phase::Think(Think::again())),
         }
     }
+}
+
+/// The most useful climb, centimetres, that leads through free space.
+fn free_climb(context: &Context<'_>) -> Option<i64> {
+    let full = context.config.scan_climb_cm;
+    [
+        full,
+        full * 3 / 4,
+        full / 2,
+        -full / 2,
+        -full * 3 / 4,
+        -full,
+    ]
+    .into_iter()
+    .find(|&centimeters| {
+        centimeters.abs() >= SHORTEST_CLIMB_CM
+            && context.vertical_is_free(centimeters as f64 / 100.0)
+    })
 }

@@ -7,7 +7,7 @@ use super::maneuver::climb;
 use super::outcome::Outcome;
 use super::phase::{Phase, Step};
 use super::pilot::CommandOutcome;
-use tello_sdk::Command;
+use tello_sdk::{Command, Speed};
 
 /// Height errors below this are left alone: the drone cannot move by less than 20 cm.
 const HEIGHT_TOLERANCE_M: f64 = 0.2;
@@ -22,6 +22,7 @@ enum State {
     #[default]
     OnGround,
     EnteringSdk,
+    SettingSpeed,
     TakingOff,
     Climbing,
 }
@@ -34,6 +35,13 @@ impl TakeOff {
                 Step::Send(Command::EnterSdk)
             }
             State::EnteringSdk => {
+                self.state = State::SettingSpeed;
+                match Speed::from_cm_per_s(i64::from(context.config.speed_cm_per_s)) {
+                    Ok(speed) => Step::Send(Command::SetSpeed(speed)),
+                    Err(_) => Step::Wait,
+                }
+            }
+            State::SettingSpeed => {
                 self.state = State::TakingOff;
                 Step::Send(Command::TakeOff)
             }

@@ -1,16 +1,19 @@
 //! Between two flights: look at the map, find exits, choose a goal, plan a path to it.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector3};
 
+use super::choice::{Choice, home_choice, next_choice};
 use super::context::Context;
 use super::event::{Event, Goal};
-use super::fly::{Arrival, Fly};
+use super::fly::{Arrival, Fly, look_at};
 use super::outcome::Outcome;
 use super::phase::{Phase, Step};
 use super::record::Cycle;
 use super::recover::Recover;
 use super::scan::Scan;
-use crate::atlas::{KnownLimits, Portal, PortalState};
+use crate::atlas::KnownLimits;
 use crate::heading::LevelPose;
 use crate::reach::{Reach, ReachLimits};
 use crate::route::Route;
@@ -19,6 +22,10 @@ use crate::stage::{Stage, staged};
 
 /// Places that a flood may reach: a large flat at 0.1 m.
 const MOST_PLACES: usize = 200_000;
+/// Flights shorter than this are looks from where the drone is, metres.
+const SHORTEST_FLIGHT_M: f64 = 0.25;
+/// Flights home at most: the battery's reserve holds no more.
+const MOST_HOME_FLIGHTS: usize = 6;
 /// Perceptions that fail in a row before the mission gives up: each follows a new scan.
 const MOST_FAILURES: usize = 3;
 
@@ -26,15 +33,6 @@ const MOST_FAILURES: usize = 3;
 pub(super) struct Think {
     /// A full turn was just made here, so exits can be looked for.
     site: bool,
-}
-
-/// The best thing to do about one portal.
-struct Choice {
-    portal: usize,
-    place: usize,
-    goal: Goal,
-    /// Distance left to the point behind the portal, map units.
-    left: f64,
 }
 
 impl Think {
@@ -47,8 +45,8 @@ impl Think {
     }
 
     pub(super) fn next(&mut self, context: &mut Context<'_>) -> Step {
-        if context.scans.len() > context.config.scan_budget {
-            return context.land(Outcome::OutOfScans);
+        if context.scans.len() >= context.config.scan_budget && context.homing.is_none() {
+            context.homing = Some(Outcome::OutOfScans);
         }
         let Some(pose) = context.knowledge.pose() else {
             return Step::Become(Phase::Recover(Recover::in_place()));
@@ -105,9 +103,10 @@ impl Think {
             path: Vec::new(),
             goal: None,
         };
+        let scene = Arc::new(scene);
+        context.scene = Some(Arc::clone(&scene));
         let step = self.choose(context, pose, &scene, &mut cycle);
         context.cycles.push(cycle);
-        context.scene = Some(scene);
         step
     }
 
@@ -118,49 +117,158 @@ impl Think {
         scene: &Scene,
         cycle: &mut Cycle,
     ) -> Step {
-        let radius = scene.radius_at(
-            &pose.position,
-            scene.units(context.config.planning_radius_m()),
-            scene.units(context.config.drone_radius_m),
-        );
+        let radii = radii(context, pose, scene);
+        let radius = radii.last().copied().unwrap_or_default();
         let reach = staged(context.stages, Stage::Choose, || {
             flood(&context.shared.config.exploration, pose, scene, radius)
         });
-        loop {
-            let Some(choice) = next_choice(context, scene, &reach) else {
-                return context.land(Outcome::Explored);
-            };
-            let here =
-                choice.place == 0 || distance(&reach, choice.place, pose) < scene.units(0.25);
-            if here && choice.goal != Goal::Through {
-                // Nowhere nearer to fly to: a look from here may prove more space free, once.
-                if let Some(step) = look_from_here(context, pose, &choice) {
-                    return step;
-                }
-                continue;
+        if context.homing.is_none() {
+            match self.explore(context, pose, scene, &reach, &radii, cycle) {
+                Some(step) => return step,
+                None => context.homing = Some(Outcome::Explored),
             }
-            let planned = Route::plan(
-                scene,
-                &reach,
-                choice.place,
-                radius,
-                &context.shared.config.exploration,
-                &mut context.shared.rng,
-                context.stages,
-            );
-            let Some(route) = planned else {
-                block(context, choice.portal);
-                continue;
-            };
-            context.log(Event::Heading {
-                meters: route.length() * scene.meters_per_unit,
-                goal: choice.goal,
-            });
-            cycle.raw_path.clone_from(&route.raw);
-            cycle.path.clone_from(&route.path);
-            cycle.goal = Some(choice.goal);
-            return Step::Become(Phase::Fly(fly(context, &route, &choice)));
         }
+        go_home(context, pose, scene, &reach, &radii, cycle)
+    }
+
+    /// The next exploring step; `None` when nothing is left to explore.
+    fn explore(
+        &self,
+        context: &mut Context<'_>,
+        pose: &LevelPose,
+        scene: &Scene,
+        reach: &Reach,
+        radii: &[f64],
+        cycle: &mut Cycle,
+    ) -> Option<Step> {
+        loop {
+            let choice = next_choice(context, scene, reach)?;
+            if let Arrival::Look { portal, left } = choice.arrival
+                && distance(reach, choice.place, pose) < scene.units(SHORTEST_FLIGHT_M)
+            {
+                // Nowhere nearer to fly to, but a look from here may prove more space free.
+                match look_at(context, pose, portal, left) {
+                    Some(step) => return Some(step),
+                    None => continue,
+                }
+            }
+            match plan(context, scene, reach, radii, &choice) {
+                Some(route) => return Some(set_out(context, scene, &route, &choice, cycle)),
+                None => note_attempt(context, reach, &choice),
+            }
+        }
+    }
+}
+
+/// Flies back to where the drone took off: the one place whose ground is known to be clear. Lands right here after too many
+/// attempts, or without any way.
+fn go_home(
+    context: &mut Context<'_>,
+    pose: &LevelPose,
+    scene: &Scene,
+    reach: &Reach,
+    radii: &[f64],
+    cycle: &mut Cycle,
+) -> Step {
+    context.home_flights += 1;
+    let outcome = context.homing.clone().unwrap_or(Outcome::Explored);
+    if context.home_flights > MOST_HOME_FLIGHTS {
+        return context.land(outcome);
+    }
+    let Some(home) = context.home() else {
+        return context.land(outcome);
+    };
+    if (home - pose.position).norm() < scene.units(context.config.exploration.arrival_m) {
+        return context.land(outcome);
+    }
+    let planned = home_choice(context, scene, reach, &home)
+        .and_then(|choice| Some((plan(context, scene, reach, radii, &choice)?, choice)));
+    let (route, choice) = match planned {
+        Some(planned) => planned,
+        // No way was found through proven-free space, but there is the way that the drone came.
+        None => (
+            way_came(context, scene),
+            Choice {
+                place: 0,
+                goal: Goal::Home,
+                arrival: Arrival::Home,
+            },
+        ),
+    };
+    set_out(context, scene, &route, &choice, cycle)
+}
+
+/// The flown path backwards, its loops cut where the shortcut is free.
+fn way_came(context: &Context<'_>, scene: &Scene) -> Route {
+    let radius = scene.units(context.config.flying_radius_m(0.2));
+    Route::along(scene, context.way_came(scene), radius)
+}
+
+fn set_out(
+    context: &mut Context<'_>,
+    scene: &Scene,
+    route: &Route,
+    choice: &Choice,
+    cycle: &mut Cycle,
+) -> Step {
+    context.log(Event::Heading {
+        meters: route.length() * scene.meters_per_unit,
+        goal: choice.goal,
+    });
+    cycle.raw_path.clone_from(&route.raw);
+    cycle.path.clone_from(&route.path);
+    cycle.goal = Some(choice.goal);
+    Step::Become(Phase::Fly(Fly::along(route, choice.arrival)))
+}
+
+/// Radii to plan with, map units, the widest first; less than the least one only where the drone already is nearer to an obstacle.
+fn radii(context: &Context<'_>, pose: &LevelPose, scene: &Scene) -> Vec<f64> {
+    let body = scene.units(context.config.drone_radius_m);
+    let radii = context
+        .config
+        .planning_radii_m()
+        .map(|meters| scene.units(meters));
+    let mut limited: Vec<f64> = radii
+        .iter()
+        .map(|&radius| scene.radius_at(&pose.position, radius, body))
+        .collect();
+    limited.dedup();
+    limited
+}
+
+/// Plans a path and counts the flight as failed until it arrives.
+fn plan(
+    context: &mut Context<'_>,
+    scene: &Scene,
+    reach: &Reach,
+    radii: &[f64],
+    choice: &Choice,
+) -> Option<Route> {
+    let shared = &mut *context.shared;
+    let exploration = &shared.config.exploration;
+    let route = Route::plan(
+        scene,
+        reach,
+        choice.place,
+        radii,
+        exploration,
+        &mut shared.rng,
+        context.stages,
+    )?;
+    note_attempt(context, reach, choice);
+    Some(route)
+}
+
+/// Counts a flight that has not arrived yet: one that arrives changes its portal's state or distance, or becomes a site.
+fn note_attempt(context: &mut Context<'_>, reach: &Reach, choice: &Choice) {
+    match choice.arrival {
+        Arrival::Site(Some(portal)) | Arrival::Look { portal, .. } => {
+            if let Some(portal) = context.atlas.portal_mut(portal) {
+                portal.failures += 1;
+            }
+        }
+        Arrival::Site(None) => context.shared.tried.extend(reach.position(choice.place)),
+        Arrival::Home => {}
     }
 }
 
@@ -255,81 +363,6 @@ fn flood(
         max_places: MOST_PLACES,
     };
     Reach::flood(pose, &limits, |a, b| scene.motion_is_free(a, b, radius))
-}
-
-/// The first portal, best first, that can be passed or approached; portals that can be neither are blocked.
-fn next_choice(context: &mut Context<'_>, scene: &Scene, reach: &Reach) -> Option<Choice> {
-    let exploration = context.config.exploration.clone();
-    for portal in context.atlas.unvisited() {
-        let Some(entry) = context.atlas.portals().get(portal) else {
-            continue;
-        };
-        let through = entry.through;
-        let Some((place, left)) = reach.best(|position| (position - through).norm()) else {
-            continue;
-        };
-        let progress = entry.closest - left;
-        if left < scene.units(exploration.arrival_m) {
-            return Some(Choice {
-                portal,
-                place,
-                goal: Goal::Through,
-                left,
-            });
-        }
-        if entry.approaches < exploration.approaches
-            && progress > scene.units(exploration.least_progress_m)
-        {
-            let newest = entry.site + 1 == context.atlas.sites().len();
-            let goal = if newest { Goal::Approach } else { Goal::Return };
-            return Some(Choice {
-                portal,
-                place,
-                goal,
-                left,
-            });
-        }
-        block(context, portal);
-    }
-    None
-}
-
-fn block(context: &mut Context<'_>, portal: usize) {
-    if let Some(portal) = context.atlas.portal_mut(portal) {
-        portal.state = PortalState::Blocked;
-    }
-}
-
-fn note_approach(portal: &mut Portal, left: f64) {
-    portal.approaches += 1;
-    portal.closest = portal.closest.min(left);
-}
-
-fn look_from_here(context: &mut Context<'_>, pose: &LevelPose, choice: &Choice) -> Option<Step> {
-    let portal = context.atlas.portal_mut(choice.portal)?;
-    note_approach(portal, choice.left);
-    let towards = pose.turn_to(&portal.through);
-    Some(Step::Become(Phase::Scan(Scan::look(context, towards))))
-}
-
-fn fly(context: &mut Context<'_>, route: &Route, choice: &Choice) -> Fly {
-    let through = context
-        .atlas
-        .portals()
-        .get(choice.portal)
-        .map(|portal| portal.through);
-    let arrival = match (choice.goal, through) {
-        (Goal::Through, _) | (_, None) => Arrival::Site,
-        (Goal::Approach | Goal::Return, Some(target)) => Arrival::LookAt(target),
-    };
-    if let Some(portal) = context.atlas.portal_mut(choice.portal) {
-        if choice.goal == Goal::Through {
-            portal.state = PortalState::Traversed;
-        } else {
-            note_approach(portal, choice.left);
-        }
-    }
-    Fly::along(route, arrival)
 }
 
 fn distance(reach: &Reach, place: usize, pose: &LevelPose) -> f64 {
