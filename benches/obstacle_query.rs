@@ -8,7 +8,7 @@
 )]
 
 #[path = "inputs/rooms.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, reason = "each bench uses a part of the shared inputs")]
 mod rooms;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

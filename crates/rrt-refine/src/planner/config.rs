@@ -2,7 +2,7 @@
 
 /// Parameters of [`rrt`](crate::rrt) and [`rrt_connect`](crate::rrt_connect).
 ///
-/// The exploration paper names RRT as its planner and prints no parameter of it, so none of these is the paper's; the
+/// The exploration paper names RRT as its planner; what we know of it (not its full text) has no parameter of it, so none of these is the paper's; the
 /// source of each is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RrtConfig {

@@ -172,7 +172,10 @@ impl Flight {
     }
 
     /// Everything that was said, for the message of a failed test.
-    #[allow(dead_code)]
+    #[allow(
+        dead_code,
+        reason = "each test file that includes this module uses a part of it"
+    )]
     pub(crate) fn transcript(&self) -> String {
         let mut lines: Vec<(Duration, String)> = Vec::new();
         lines.extend(
@@ -198,7 +201,10 @@ impl Flight {
     }
 
     /// How often a text was sent.
-    #[allow(dead_code)]
+    #[allow(
+        dead_code,
+        reason = "each test file that includes this module uses a part of it"
+    )]
     pub(crate) fn count_sent(&self, text: &str) -> usize {
         self.sent.iter().filter(|(_, sent)| sent == text).count()
     }
