@@ -108,6 +108,10 @@ pub(crate) struct Clean {
     /// How outliers are told.
     #[arg(long, value_enum, default_value_t = CleanMethod::Submodular)]
     pub(crate) method: CleanMethod,
+    /// Where the camera was, for a map without observations: far points are then judged more
+    /// leniently, as their depth is less certain.
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = vector)]
+    pub(crate) position: Option<Vector>,
     /// Write the kept points.
     #[arg(short, long, value_name = "KEPT.ply")]
     pub(crate) output: Option<PathBuf>,

@@ -135,10 +135,14 @@ impl LoadedMap {
         given.or(told).unwrap_or([0.0, 0.0, 1.0])
     }
 
-    /// Which keyframe sees which point, as the outlier removal wants it.
-    pub(crate) fn views(&self) -> Result<Option<Views>, Failure> {
+    /// Which keyframe sees which point, as the outlier removal wants it; for a map without
+    /// observations all are seen from the agent's position, when it is known.
+    pub(crate) fn views(&self, position: Option<Vector>) -> Result<Option<Views>, Failure> {
         if !self.map.has_observations() {
-            return Ok(None);
+            let views = position.map(|from| Views::from_position(from, self.points.len()));
+            return views
+                .transpose()
+                .map_err(|error| Failure::new(error, "give another --position"));
         }
         let centers = self
             .map

@@ -4,7 +4,7 @@ use serde::Serialize;
 use slam_bridge::write_ply;
 use submodular_minimax::{OutlierConfig, baseline, remove_outliers};
 
-use crate::args::{Clean, CleanMethod, Output};
+use crate::args::{Clean, CleanMethod, Output, Vector};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::{deliver, write_file};
@@ -42,7 +42,12 @@ pub(crate) fn run(arguments: &Clean, output: &Output) -> Result<(), Failure> {
     let progress = Progress::begin("reading the map");
     let loaded = input::load(&arguments.input)?;
     progress.step("removing outliers");
-    let report = clean(&loaded, arguments.method, arguments.repeat)?;
+    let report = clean(
+        &loaded,
+        arguments.method,
+        arguments.position,
+        arguments.repeat,
+    )?;
     drop(progress);
     if let Some(path) = &arguments.output {
         let kept = loaded.map.with_points_at(&report.kept_indices);
@@ -57,12 +62,13 @@ pub(crate) fn run(arguments: &Clean, output: &Output) -> Result<(), Failure> {
 pub(crate) fn clean(
     loaded: &LoadedMap,
     method: CleanMethod,
+    position: Option<Vector>,
     repeat: u32,
 ) -> Result<CleanReport, Failure> {
     let mut times = Vec::new();
     let mut result = None;
     for _ in 0..repeat.max(1) {
-        let (removal, seconds) = timed(|| removal(loaded, method));
+        let (removal, seconds) = timed(|| removal(loaded, method, position));
         times.push(seconds);
         result = Some(removal?);
     }
@@ -71,11 +77,15 @@ pub(crate) fn clean(
     Ok(report)
 }
 
-fn removal(loaded: &LoadedMap, method: CleanMethod) -> Result<CleanReport, Failure> {
+fn removal(
+    loaded: &LoadedMap,
+    method: CleanMethod,
+    position: Option<Vector>,
+) -> Result<CleanReport, Failure> {
     let points = &loaded.points;
     let baseline = match method {
-        CleanMethod::Submodular => return minimax(loaded, &OutlierConfig::default()),
-        CleanMethod::Paper => return minimax(loaded, &OutlierConfig::paper()),
+        CleanMethod::Submodular => return minimax(loaded, position, &OutlierConfig::default()),
+        CleanMethod::Paper => return minimax(loaded, position, &OutlierConfig::paper()),
         CleanMethod::Sor => baseline::statistical(points, &Default::default()),
         CleanMethod::Ror => baseline::radius(points, &Default::default()),
         CleanMethod::Dbscan => baseline::dbscan(points, &Default::default()),
@@ -92,8 +102,12 @@ fn removal(loaded: &LoadedMap, method: CleanMethod) -> Result<CleanReport, Failu
     })
 }
 
-fn minimax(loaded: &LoadedMap, config: &OutlierConfig) -> Result<CleanReport, Failure> {
-    let views = loaded.views()?;
+fn minimax(
+    loaded: &LoadedMap,
+    position: Option<Vector>,
+    config: &OutlierConfig,
+) -> Result<CleanReport, Failure> {
+    let views = loaded.views(position)?;
     let removal = remove_outliers(&loaded.points, views.as_ref(), config)
         .map_err(|error| Failure::new(error, "correct the map"))?;
     let certificate = CertificateReport {

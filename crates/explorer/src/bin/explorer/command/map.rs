@@ -96,8 +96,11 @@ fn pipeline(
     let (position, up) = (arguments.position, arguments.up);
     let units = loaded.units_per_meter(Some(position));
     let radius = arguments.radius.unwrap_or(RADIUS_M * units);
+    // What a map unit is worth is a guess where nobody said it, and no exit is refused by a guess.
+    let known = arguments.radius.is_some() || loaded.map.scale.meters_per_unit().is_some();
+    let min_width = known.then_some(2.0 * radius);
     progress.step("removing outliers");
-    let clean = clean::clean(loaded, CleanMethod::Submodular, 1)?;
+    let clean = clean::clean(loaded, CleanMethod::Submodular, Some(position), 1)?;
     let points = at(&loaded.points, &clean.kept_indices);
     progress.step("looking for exits");
     let (exits, exits_seconds) = timed(|| {
@@ -107,7 +110,7 @@ fn pipeline(
             position,
             up,
             ExitRule::RangeAware,
-            Some(2.0 * radius),
+            min_width,
         )
     });
     let exits = exits?;

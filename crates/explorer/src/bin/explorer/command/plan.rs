@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Plan, output: &Output) -> Result<(), Failure> {
     loaded.check_position("--from", arguments.from)?;
     loaded.check_position("--to", arguments.to)?;
     progress.step("removing outliers");
-    let cleaned = clean(&loaded, CleanMethod::Submodular, 1)?;
+    let cleaned = clean(&loaded, CleanMethod::Submodular, None, 1)?;
     progress.step("building obstacles");
     let units = loaded.units_per_meter(Some(arguments.from));
     let kept = &cleaned.kept_indices;
