@@ -40,11 +40,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                 distortion,
             }
         }
-        _ => Camera::ideal(
-            sequence
-                .camera
-                .ok_or("the folder names no camera: give nine numbers")?,
-        ),
+        _ => sequence
+            .camera
+            .ok_or("the folder names no camera: give nine numbers")?,
     };
     let mut odometry = Odometry::new(camera, OdometryConfig::default())?;
     let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);

@@ -4,7 +4,7 @@
 
 use std::path::PathBuf;
 
-use edge_slam::camera::{Camera, PinholeCamera, RadialTangential};
+use edge_slam::camera::Camera;
 use edge_slam::edge::{CannyConfig, JunctionConfig, canny, find_junctions, trace_chains};
 use edge_slam::evaluation::{Alignment, ApeConfig, TimedPose, absolute_pose_error};
 use edge_slam::odometry::{Odometry, OdometryConfig};
@@ -49,7 +49,7 @@ fn a_kitchen_is_tracked_with_depth() {
         return;
     };
     let sequence = ImageSequence::open(&folder).unwrap();
-    let camera = Camera::ideal(sequence.camera.unwrap());
+    let camera = sequence.camera.unwrap();
     let trajectory = run(&sequence, camera, 30, true);
     assert!(trajectory.len() >= 29, "{}", trajectory.len());
     let truth = std::fs::read(folder.join("groundtruth_tum.txt")).unwrap();
@@ -68,23 +68,7 @@ fn a_turning_camera_is_tracked_with_depth() {
         return;
     };
     let sequence = ImageSequence::open(&folder).unwrap();
-    let pinhole = PinholeCamera::new(517.306408, 516.469215, 318.643040, 255.313989).unwrap();
-    let distortion = RadialTangential {
-        k1: 0.262383,
-        k2: -0.953104,
-        p1: -0.005358,
-        p2: 0.002628,
-        k3: 1.163314,
-    };
-    let trajectory = run(
-        &sequence,
-        Camera {
-            pinhole,
-            distortion,
-        },
-        60,
-        true,
-    );
+    let trajectory = run(&sequence, sequence.camera.unwrap(), 60, true);
     assert!(trajectory.len() >= 27, "{}", trajectory.len());
     let truth = std::fs::read(folder.join("groundtruth.txt")).unwrap();
     let truth = read_tum(&truth[..]).unwrap();

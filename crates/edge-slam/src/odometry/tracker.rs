@@ -113,6 +113,18 @@ impl Odometry {
         self.builder.map()
     }
 
+    /// Pixels (of the image as it came) and depths of the points that the newest keyframe knows, in the map's unit:
+    /// what a predicted depth image can be held against ([`crate::depth::fit_depth`]).
+    pub fn reference_points(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
+        let sight = self.keyframe.as_ref().map(|keyframe| &keyframe.sight);
+        sight.into_iter().flat_map(|sight| {
+            let places = sight.features.keypoints.iter().zip(&sight.points);
+            places.filter_map(|(k, point)| {
+                Some(([f64::from(k.x), f64::from(k.y)], point.as_ref()?.z))
+            })
+        })
+    }
+
     /// Whether coordinates are metres.
     #[must_use]
     pub fn is_metric(&self) -> bool {

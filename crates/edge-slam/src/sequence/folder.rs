@@ -4,16 +4,17 @@
 //! TUM    rgb.txt, depth.txt (optional): "timestamp filename" lines; depth 5000 units per metre
 //! plain  color/ (or image/, rgb/, gray/), depth/ (optional): files paired by name; times from timestamps.txt (one per line)
 //!        or 1/30 s apart; depth 1000 units per metre
-//! both   camera-intrinsics.txt (optional): the 3x3 matrix K
+//! both   camera-intrinsics.txt (optional): the 3x3 matrix K; without it a TUM folder has the benchmark's camera
 //! ```
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::calibration::{read_intrinsics, tum_camera};
 use super::listing::{Entry, pair, parse_list};
 use super::{DecodeError, decode_depth, decode_gray};
-use crate::camera::PinholeCamera;
+use crate::camera::Camera;
 use crate::depth::DepthImage;
 use crate::image::GrayImage;
 
@@ -57,8 +58,11 @@ pub enum SequenceError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageSequence {
     frames: Vec<FrameFiles>,
-    /// Ideal camera, where the folder names one.
-    pub camera: Option<PinholeCamera>,
+    /// The camera that the folder names, or, in the TUM layout, the one that the benchmark publishes for a folder of
+    /// this name (`fr1`, `freiburg2`...; its default camera else).
+    pub camera: Option<Camera>,
+    /// Whether the folder itself names the camera.
+    pub names_camera: bool,
     /// Depth readings per metre; set by the layout, change before loading when the recording differs.
     pub depth_units_per_metre: f32,
 }
@@ -102,13 +106,16 @@ impl ImageSequence {
     /// # Errors
     /// [`SequenceError`] for missing files and lines that are not understood.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
-        let (frames, depth_units_per_metre) = match fs::read_to_string(folder.join("rgb.txt")) {
-            Ok(list) => (tum_frames(folder, &list)?, 5000.0),
-            Err(_) => (plain_frames(folder)?, 1000.0),
-        };
+        let own = read_intrinsics(folder)?;
+        let (frames, depth_units_per_metre, published) =
+            match fs::read_to_string(folder.join("rgb.txt")) {
+                Ok(list) => (tum_frames(folder, &list)?, 5000.0, tum_camera(folder)),
+                Err(_) => (plain_frames(folder)?, 1000.0, None),
+            };
         Ok(Self {
             frames,
-            camera: read_camera(folder)?,
+            names_camera: own.is_some(),
+            camera: own.or(published),
             depth_units_per_metre,
         })
     }
@@ -117,6 +124,12 @@ impl ImageSequence {
     #[must_use]
     pub fn len(&self) -> usize {
         self.frames.len()
+    }
+
+    /// Whether any frame has recorded depth.
+    #[must_use]
+    pub fn has_depth(&self) -> bool {
+        self.frames.iter().any(|frame| frame.depth.is_some())
     }
 
     /// Whether there is none.
@@ -234,29 +247,4 @@ fn read_times(folder: &Path) -> Result<Vec<f64>, SequenceError> {
     };
     let filled = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.starts_with('#');
     text.lines().enumerate().filter(filled).map(parse).collect()
-}
-
-fn read_camera(folder: &Path) -> Result<Option<PinholeCamera>, SequenceError> {
-    const NAME: &str = "camera-intrinsics.txt";
-    let Ok(text) = fs::read_to_string(folder.join(NAME)) else {
-        return Ok(None);
-    };
-    let numbers: Vec<f64> = text
-        .split_whitespace()
-        .filter_map(|word| word.parse().ok())
-        .collect();
-    match numbers[..] {
-        [fx, _, cx, _, fy, cy, ..] => {
-            PinholeCamera::new(fx, fy, cx, cy)
-                .map(Some)
-                .map_err(|_| SequenceError::Line {
-                    name: NAME,
-                    line: 1,
-                })
-        }
-        _ => Err(SequenceError::Line {
-            name: NAME,
-            line: 1,
-        }),
-    }
 }

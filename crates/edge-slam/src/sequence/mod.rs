@@ -1,5 +1,6 @@
 //! Recorded image sequences: decoding of PNG and JPEG, TUM folders, plain folders (feature `image-files`).
 
+mod calibration;
 mod decode;
 mod folder;
 mod listing;

@@ -4,6 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+mod slam;
+
+pub(crate) use slam::{AlignChoice, DepthChoice, Evaluate, Slam, join_model_file};
+
 /// Explores unknown rooms with a toy drone, and cleans, reads and plans on sparse SLAM maps.
 ///
 /// Without a command it flies the demonstration. Lengths are map units: a monocular map has no scale.
@@ -48,6 +52,10 @@ pub(crate) enum Command {
     Plan(Plan),
     /// Fly missions in the simulator, faster than real time.
     Simulate(Simulate),
+    /// Track a recorded image sequence: trajectory, sparse and edge map, pictures.
+    Slam(Slam),
+    /// Measure a trajectory against the true one: APE (ATE) and RPE as evo defines them.
+    Evaluate(Evaluate),
 }
 
 /// A map to read, and what its unit is.

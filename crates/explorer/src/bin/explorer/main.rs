@@ -12,6 +12,7 @@ mod plot;
 mod progress;
 mod report;
 mod stopwatch;
+mod tracking;
 
 use std::process::ExitCode;
 
@@ -19,7 +20,7 @@ use clap::Parser as _;
 
 fn main() -> ExitCode {
     // Wrong usage ends here with exit code 2.
-    let cli = args::Cli::parse();
+    let cli = args::Cli::parse_from(args::join_model_file(std::env::args_os()));
     logging::begin();
     match command::run(cli) {
         Ok(()) => ExitCode::SUCCESS,

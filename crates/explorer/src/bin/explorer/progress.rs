@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use indicatif::ProgressBar;
+use indicatif::{ProgressBar, ProgressStyle};
 
 /// A line that says what is being done.
 #[derive(Debug)]
@@ -17,6 +17,22 @@ impl Progress {
         bar.enable_steady_tick(Duration::from_millis(120));
         bar.set_message(step.to_owned());
         Self { bar }
+    }
+
+    /// Turns into a bar that fills as [`Progress::advance`] is called `total` times.
+    pub(crate) fn count(&self, step: &str, total: usize) {
+        let style =
+            ProgressStyle::with_template("{spinner} {msg} {bar:40} {pos}/{len}, {eta} left");
+        if let Ok(style) = style {
+            self.bar.set_style(style);
+        }
+        self.bar.set_length(total as u64);
+        self.bar.set_message(step.to_owned());
+    }
+
+    /// One more of what is counted is done.
+    pub(crate) fn advance(&self) {
+        self.bar.inc(1);
     }
 
     pub(crate) fn step(&self, step: impl Into<String>) {

@@ -2,11 +2,13 @@
 
 mod clean;
 mod demo;
+mod evaluate;
 mod exits;
 mod map;
 mod obstacles;
 mod plan;
 mod simulate;
+mod slam;
 
 use crate::args::{Cli, Command, Demo};
 use crate::failure::Failure;
@@ -23,5 +25,7 @@ pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Obstacles(arguments)) => obstacles::run(&arguments, output),
         Some(Command::Plan(arguments)) => plan::run(&arguments, output),
         Some(Command::Simulate(arguments)) => simulate::run(&arguments, output),
+        Some(Command::Slam(arguments)) => slam::run(&arguments, output),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, output),
     }
 }

@@ -9,7 +9,9 @@ mod png;
 mod save;
 pub(crate) mod scene;
 mod shapes;
+pub(crate) mod trajectory;
 
 pub(crate) use axes::TopView;
 pub(crate) use figure::{Figure, Layer, Shape, color};
 pub(crate) use save::save;
+pub(crate) use trajectory::{AxisPair, Track};

@@ -1,0 +1,237 @@
+//! `explorer evaluate`: how far a trajectory is from the true one.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use edge_slam::evaluation::{
+    AbsolutePoseError, Alignment, ApeConfig, ErrorStatistics, EvaluationError, RpeConfig,
+    RpeInterval, TimedPose, absolute_pose_error, relative_pose_error,
+};
+use serde::Serialize;
+use slam_bridge::read_tum;
+
+use crate::args::{AlignChoice, Evaluate, Output};
+use crate::failure::Failure;
+use crate::output::deliver;
+use crate::plot::{AxisPair, Figure, Layer, Shape, Track, color, trajectory};
+
+/// The command's JSON object: the translation part of the absolute pose error, then everything else.
+#[derive(Debug, Clone, Serialize)]
+struct EvaluateReport {
+    #[serde(flatten)]
+    translation: Summary,
+    /// Poses compared.
+    pairs: usize,
+    /// What the estimate's lengths were multiplied by.
+    scale: f64,
+    /// sim3, se3 or none.
+    align: &'static str,
+    /// Poses in the estimate's file, and in the reference's.
+    poses: [usize; 2],
+    /// Absolute rotation error, degrees.
+    rotation_deg: Summary,
+    /// ‖E − I‖ over 4x4 matrices, which mixes metres and rotation; only for comparison.
+    frobenius: Summary,
+    /// Drift from one compared pose to the next (evo's default), and over a second.
+    rpe_frame: Option<Drift>,
+    rpe_second: Option<Drift>,
+}
+
+/// Statistics as evo names them.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Summary {
+    rmse: f64,
+    mean: f64,
+    median: f64,
+    std: f64,
+    min: f64,
+    max: f64,
+}
+
+impl Summary {
+    fn of(errors: &ErrorStatistics, unit: f64) -> Self {
+        let ErrorStatistics {
+            rmse,
+            mean,
+            median,
+            std,
+            min,
+            max,
+        } = *errors;
+        let [rmse, mean, median, std, min, max] =
+            [rmse, mean, median, std, min, max].map(|value| value * unit);
+        Self {
+            rmse,
+            mean,
+            median,
+            std,
+            min,
+            max,
+        }
+    }
+}
+
+/// Relative pose error over an interval.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Drift {
+    translation: Summary,
+    rotation_deg: Summary,
+    pairs: usize,
+}
+
+pub(crate) fn run(arguments: &Evaluate, output: &Output) -> Result<(), Failure> {
+    let estimate = read(&arguments.estimate)?;
+    let reference = read(&arguments.reference)?;
+    let config = ApeConfig {
+        alignment: match arguments.align {
+            AlignChoice::Sim3 => Alignment::Sim3,
+            AlignChoice::Se3 => Alignment::Se3,
+            AlignChoice::None => Alignment::None,
+        },
+        max_difference: arguments.max_difference,
+    };
+    let ape = absolute_pose_error(&estimate, &reference, &config).map_err(failure)?;
+    let drift = |interval| drift(&estimate, &reference, interval, &config, &ape);
+    let report = EvaluateReport {
+        translation: Summary::of(&ape.translation, 1.0),
+        pairs: ape.pairs.len(),
+        scale: ape.alignment.scale,
+        align: match arguments.align {
+            AlignChoice::Sim3 => "sim3",
+            AlignChoice::Se3 => "se3",
+            AlignChoice::None => "none",
+        },
+        poses: [estimate.len(), reference.len()],
+        rotation_deg: Summary::of(&ape.rotation, 1_f64.to_degrees()),
+        frobenius: Summary::of(&ape.frobenius, 1.0),
+        rpe_frame: drift(RpeInterval::Frames(1)),
+        rpe_second: drift(RpeInterval::Seconds(1.0)),
+    };
+    deliver(output, &report, &text(&report), || {
+        Ok(figure(&report, &ape, &estimate, &reference))
+    })
+}
+
+fn read(path: &Path) -> Result<Vec<TimedPose>, Failure> {
+    let named = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
+    let file = File::open(path).map_err(|error| Failure::new(named(&error), "check the path"))?;
+    let poses = read_tum(BufReader::new(file)).map_err(|error| {
+        let advice = "a trajectory has lines of 'time tx ty tz qx qy qz qw'";
+        Failure::new(named(&error), advice)
+    })?;
+    if poses.is_empty() {
+        let advice = "record or export the trajectory again";
+        return Err(Failure::new(named(&"there is no pose in it"), advice));
+    }
+    Ok(poses)
+}
+
+/// An error's own text says what to do; where it does not, this does.
+fn failure(error: EvaluationError) -> Failure {
+    let advice = match error {
+        EvaluationError::TooFewPairs { .. } => {
+            "--max-difference allows stamps that are farther apart"
+        }
+        EvaluationError::Degenerate { .. } => "use --align none, or a trajectory with a bend",
+        _ => "correct the trajectories",
+    };
+    Failure::new(error, advice)
+}
+
+/// None when the trajectories are too short for the interval.
+fn drift(
+    estimate: &[TimedPose],
+    reference: &[TimedPose],
+    interval: RpeInterval,
+    ape: &ApeConfig,
+    aligned: &AbsolutePoseError,
+) -> Option<Drift> {
+    let config = RpeConfig {
+        interval,
+        all_pairs: matches!(interval, RpeInterval::Seconds(_)),
+        max_difference: ape.max_difference,
+        scale: aligned.alignment.scale,
+    };
+    let rpe = relative_pose_error(estimate, reference, &config).ok()?;
+    Some(Drift {
+        translation: Summary::of(&rpe.translation, 1.0),
+        rotation_deg: Summary::of(&rpe.rotation, 1_f64.to_degrees()),
+        pairs: rpe.pairs,
+    })
+}
+
+fn text(report: &EvaluateReport) -> String {
+    let error = &report.translation;
+    let mut text = format!(
+        "ATE rmse {:.6} m over {} pairs ({} alignment, scale {:.6})\n\
+         mean {:.6}, median {:.6}, std {:.6}, min {:.6}, max {:.6} m; rotation rmse {:.3} degrees",
+        error.rmse,
+        report.pairs,
+        report.align,
+        report.scale,
+        error.mean,
+        error.median,
+        error.std,
+        error.min,
+        error.max,
+        report.rotation_deg.rmse,
+    );
+    for (name, drift) in [("frame", &report.rpe_frame), ("second", &report.rpe_second)] {
+        if let Some(drift) = drift {
+            text.push_str(&format!(
+                "\nRPE rmse {:.6} m and {:.3} degrees a {name} ({} pairs)",
+                drift.translation.rmse, drift.rotation_deg.rmse, drift.pairs
+            ));
+        }
+    }
+    text
+}
+
+/// Both trajectories, and a stroke from each compared pose to where it should be.
+fn figure(
+    report: &EvaluateReport,
+    ape: &AbsolutePoseError,
+    estimate: &[TimedPose],
+    reference: &[TimedPose],
+) -> Figure {
+    let place = |pose: &TimedPose| -> [f64; 3] { pose.pose.translation.vector.into() };
+    let moved = |pose: &TimedPose| -> [f64; 3] {
+        ape.alignment
+            .apply(&pose.pose.translation.vector.into())
+            .into()
+    };
+    let tracks = [
+        Track {
+            label: format!("reference ({})", reference.len()),
+            color: color::WALL,
+            dashed: true,
+            through: reference.iter().map(place).collect(),
+        },
+        Track {
+            label: format!("estimate ({})", estimate.len()),
+            color: color::PATH,
+            dashed: false,
+            through: estimate.iter().map(moved).collect(),
+        },
+    ];
+    let axes = AxisPair::widest(tracks.iter().flat_map(|track| &track.through));
+    let stroke = |&(i, j): &(usize, usize)| {
+        let (from, to) = (estimate.get(i)?, reference.get(j)?);
+        Some([axes.project(&moved(from)), axes.project(&place(to))])
+    };
+    let ends = ape.pairs.iter().filter_map(stroke).collect();
+    let title = "Estimated and true trajectory";
+    let subtitle = format!(
+        "ATE rmse {:.4} m, {} pairs, {} alignment, scale {:.4}",
+        report.translation.rmse, report.pairs, report.align, report.scale
+    );
+    let mut figure = trajectory::figure(title, &subtitle, "m", axes, &tracks);
+    let errors = Layer::new(
+        "error",
+        color::REMOVED,
+        Shape::Segments { ends, width: 1.0 },
+    );
+    figure.layers.insert(1, errors.opacity(0.6));
+    figure
+}

@@ -1,0 +1,261 @@
+//! `explorer slam`: a recorded sequence to a trajectory, a map and pictures.
+
+use std::fs;
+use std::path::Path;
+
+use edge_slam::sequence::ImageSequence;
+use serde::Serialize;
+use slam_bridge::{Map, Scale, TimedPose, write_map_folder, write_ply, write_tum};
+
+use crate::args::{Output, Slam};
+use crate::failure::Failure;
+use crate::output::{deliver, write_file};
+use crate::plot::{self, AxisPair, Figure, Layer, Shape, Track, color, trajectory};
+use crate::progress::Progress;
+use crate::stopwatch::percentile;
+use crate::tracking::{self, DepthReport, Depths, Epoch, Tracking};
+
+/// The command's JSON object.
+#[derive(Debug, Serialize)]
+struct SlamReport {
+    /// Frames read.
+    frames: usize,
+    /// Poses in trajectory.txt.
+    tracked: usize,
+    /// Poses of all epochs: without metric depth only the longest epoch is written, for each has its own unit.
+    tracked_in_all_epochs: usize,
+    keyframes: usize,
+    ms_median: f64,
+    ms_p95: f64,
+    epochs: usize,
+    /// Whether the unit is the metre.
+    metric: bool,
+    points: usize,
+    edge_points: usize,
+    depth: DepthReport,
+    /// What was written into the folder.
+    files: Vec<String>,
+}
+
+pub(crate) fn run(arguments: &Slam, output: &Output) -> Result<(), Failure> {
+    let progress = Progress::begin("opening the sequence");
+    let sequence = ImageSequence::open(&arguments.sequence).map_err(tracking::unreadable)?;
+    if sequence.is_empty() {
+        let reason = format!("{} lists no frame", arguments.sequence.display());
+        return Err(Failure::new(reason, "give a sequence with images"));
+    }
+    let camera = tracking::camera_of(arguments, &sequence)?;
+    let mut depths = Depths::open(arguments.depth.as_ref(), &sequence)?;
+    let folder = arguments.output.as_path();
+    fs::create_dir_all(folder).map_err(|error| Failure::write(folder, &error))?;
+    let result = tracking::track(
+        arguments,
+        &sequence,
+        camera,
+        &mut depths,
+        output.seed,
+        &progress,
+    )?;
+    progress.step("writing the map and the pictures");
+    let found = Found::new(&result, &depths)?;
+    let mut files = found.write(folder)?;
+    files.extend(pictures(folder, &sequence, result.frames, &mut depths)?);
+    drop(progress);
+    let report = found.report(&result, &depths, files);
+    deliver(output, &report, &text(&report, folder), || {
+        Ok(found.figure(&report))
+    })
+}
+
+/// What is written: poses in one frame and unit, and the map of the longest epoch.
+struct Found {
+    poses: Vec<TimedPose>,
+    epoch: Epoch,
+    edges: Vec<[f64; 3]>,
+    fit: Option<edge_slam::depth::DepthFit>,
+    metric: bool,
+}
+
+impl Found {
+    fn new(result: &Tracking, depths: &Depths) -> Result<Self, Failure> {
+        let longest = result
+            .epochs
+            .iter()
+            .rev()
+            .max_by_key(|epoch| epoch.poses.len());
+        let mut epoch = longest.cloned().unwrap_or_default();
+        if epoch.poses.is_empty() {
+            let advice = if depths.is_metric() {
+                "give frames with more texture and depth"
+            } else {
+                "a monocular start needs sideways motion; give more frames, or depth"
+            };
+            return Err(Failure::new("no frame could be tracked", advice));
+        }
+        let fit = epoch.fit();
+        let scale = depths.report(fit.as_ref()).meters_per_unit;
+        if let Some(meters) = scale {
+            epoch.rescale(meters);
+        } else if !result.is_metric {
+            // A network that failed its test says nothing about where edges are.
+            epoch.edges.clear();
+        }
+        let poses = match result.is_metric {
+            true => result.epochs.iter().flat_map(|e| e.poses.clone()).collect(),
+            false => epoch.poses.clone(),
+        };
+        Ok(Self {
+            poses,
+            edges: epoch.edge_points(),
+            epoch,
+            fit,
+            metric: result.is_metric || scale.is_some(),
+        })
+    }
+
+    fn write(&self, folder: &Path) -> Result<Vec<String>, Failure> {
+        write_file(&folder.join("trajectory.txt"), |file| {
+            write_tum(&self.poses, file)
+        })?;
+        write_map_folder(&self.epoch.map, folder)
+            .map_err(|error| Failure::new(error, "check that the folder can be written to"))?;
+        let scale = if self.metric {
+            Scale::MetersPerUnit(1.0)
+        } else {
+            Scale::Unknown
+        };
+        let edges = Map {
+            scale,
+            ..Map::from_positions(self.edges.iter().copied())
+        };
+        let mut files = vec![
+            "trajectory.txt",
+            "map.ply",
+            "keyframes.csv",
+            "observations.csv.gz",
+        ];
+        if !self.edges.is_empty() {
+            write_file(&folder.join("edges.ply"), |file| write_ply(&edges, file))?;
+            files.push("edges.ply");
+        }
+        plot::save(&self.map_figure(), &folder.join("trajectory.png"))?;
+        files.push("trajectory.png");
+        Ok(files.into_iter().map(str::to_owned).collect())
+    }
+
+    fn report(&self, result: &Tracking, depths: &Depths, files: Vec<String>) -> SlamReport {
+        let all = |count: fn(&Epoch) -> usize| result.epochs.iter().map(count).sum();
+        let at = |share| percentile(result.milliseconds.clone(), share).unwrap_or(0.0);
+        SlamReport {
+            frames: result.frames,
+            tracked: self.poses.len(),
+            tracked_in_all_epochs: all(|epoch| epoch.poses.len()),
+            keyframes: all(|epoch| epoch.keyframes),
+            ms_median: at(0.5),
+            ms_p95: at(0.95),
+            epochs: result.epochs.len(),
+            metric: self.metric,
+            points: self.epoch.map.points.len(),
+            edge_points: self.edges.len(),
+            depth: depths.report(self.fit.as_ref()),
+            files,
+        }
+    }
+
+    fn unit(&self) -> &'static str {
+        if self.metric { "m" } else { "map units" }
+    }
+
+    fn map_figure(&self) -> Figure {
+        let place = |pose: &TimedPose| -> [f64; 3] { pose.pose.translation.vector.into() };
+        let track = Track {
+            label: format!("camera ({} poses)", self.poses.len()),
+            color: color::PATH,
+            dashed: false,
+            through: self.poses.iter().map(place).collect(),
+        };
+        // The camera's first frame: x to the right, z ahead, seen from above.
+        let axes = AxisPair::FROM_ABOVE;
+        let dots = |label: &str, points: &[[f64; 3]], tint, radius| {
+            let at = points.iter().map(|point| axes.project(point)).collect();
+            let label = format!("{label} ({})", points.len());
+            Layer::new(label, tint, Shape::Dots { at, radius })
+                .opacity(0.5)
+                .may_leave_frame()
+        };
+        let subtitle = format!("{} poses, from above the first camera", self.poses.len());
+        let mut figure =
+            trajectory::figure("Trajectory and map", &subtitle, self.unit(), axes, &[track]);
+        let sparse = self.epoch.map.positions();
+        let below = [
+            dots("edge points", &self.edges, color::FREE, 0.6),
+            dots("map points", &sparse, color::POINT, 1.1),
+        ];
+        figure.layers.splice(0..0, below);
+        figure
+    }
+
+    fn figure(&self, report: &SlamReport) -> Figure {
+        Figure {
+            subtitle: headline(report),
+            ..self.map_figure()
+        }
+    }
+}
+
+/// The middle frame, with whatever depth there is for it.
+fn pictures(
+    folder: &Path,
+    sequence: &ImageSequence,
+    frames: usize,
+    depths: &mut Depths,
+) -> Result<Vec<String>, Failure> {
+    let Some(loaded) = sequence.load(frames / 2).map_err(tracking::unreadable)? else {
+        return Ok(Vec::new());
+    };
+    let depth = depths.depth(&loaded.frame())?;
+    let names = tracking::draw_frame(folder, &loaded.image.view(), depth.as_ref())?;
+    Ok(names.into_iter().map(str::to_owned).collect())
+}
+
+fn headline(report: &SlamReport) -> String {
+    format!(
+        "{} of {} frames tracked, {} keyframes, {} points, {} edge points",
+        report.tracked, report.frames, report.keyframes, report.points, report.edge_points
+    )
+}
+
+fn text(report: &SlamReport, folder: &Path) -> String {
+    let mut text = format!(
+        "{}\n{:.1} ms a frame (median), {:.1} ms (95 %)",
+        headline(report),
+        report.ms_median,
+        report.ms_p95
+    );
+    if report.epochs > 1 {
+        let more = report.tracked_in_all_epochs - report.tracked;
+        text.push_str(&format!("\ntracking broke off {} times", report.epochs - 1));
+        if more > 0 {
+            text.push_str(&format!(
+                "; {more} poses of other epochs have another unit and are left out"
+            ));
+        }
+    }
+    match (&report.depth.correlation, report.depth.meters_per_unit) {
+        (Some(correlation), None) => text.push_str(&format!(
+            "\nthe network's depth correlates by {correlation:.2} with {} triangulated points: not used",
+            report.depth.pairs
+        )),
+        (Some(correlation), Some(meters)) => text.push_str(&format!(
+            "\nscale from the network: {meters:.3} m a unit, correlation {correlation:.2}"
+        )),
+        (None, _) if !report.metric => text.push_str("\nno metric scale: lengths are map units"),
+        (None, _) => {}
+    }
+    text.push_str(&format!(
+        "\nwritten to {}: {}",
+        folder.display(),
+        report.files.join(", ")
+    ));
+    text
+}

@@ -1,0 +1,182 @@
+//! Pictures of one frame: features, edges, L-junctions and depth, each as a PNG over the grey image.
+
+use std::fs;
+use std::path::Path;
+
+use edge_slam::depth::DepthImage;
+use edge_slam::edge::{
+    CannyConfig, EdgeChain, JunctionConfig, LJunction, canny, find_junctions, trace_chains,
+};
+use edge_slam::feature::{Keypoint, OrbConfig, OrbExtractor};
+use edge_slam::image::GrayView;
+use resvg::tiny_skia::{Color, Paint, PathBuilder, Pixmap, Stroke, Transform};
+
+use crate::failure::Failure;
+
+/// Picture pixels for one of the image.
+const ZOOM: f32 = 2.0;
+/// Shortest chain that is drawn, pixels.
+const SHORTEST_CHAIN: usize = 20;
+
+/// Draws features.png, edges.png, junctions.png and, where there is depth, depth.png.
+pub(crate) fn draw_frame(
+    folder: &Path,
+    image: &GrayView<'_>,
+    depth: Option<&DepthImage>,
+) -> Result<Vec<&'static str>, Failure> {
+    let features = OrbExtractor::new(OrbConfig::default())
+        .map_err(Failure::internal)?
+        .extract(image);
+    let edges = canny(image, &CannyConfig::default()).map_err(Failure::internal)?;
+    let chains = trace_chains(&edges, SHORTEST_CHAIN);
+    let junctions = find_junctions(&edges, &chains, depth, &JunctionConfig::default());
+    let mut pictures = vec![
+        ("features.png", features_over(image, &features.keypoints)?),
+        ("edges.png", edges_over(image, &chains)?),
+        ("junctions.png", junctions_over(image, &junctions)?),
+    ];
+    if let Some(depth) = depth {
+        pictures.push(("depth.png", depth_picture(depth)?));
+    }
+    let mut names = Vec::new();
+    for (name, picture) in pictures {
+        let path = folder.join(name);
+        let bytes = picture.encode_png().map_err(Failure::internal)?;
+        fs::write(&path, bytes).map_err(|error| Failure::write(&path, &error))?;
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// Circles as large as the patch, with the direction, coloured by level.
+fn features_over(image: &GrayView<'_>, keypoints: &[Keypoint]) -> Result<Pixmap, Failure> {
+    let mut picture = ground(image, 1.0)?;
+    for keypoint in keypoints {
+        let radius = 4.0 * 1.2_f32.powi(i32::from(keypoint.octave));
+        let (sin, cos) = keypoint.angle.sin_cos();
+        let (x, y) = (keypoint.x, keypoint.y);
+        let mut path = PathBuilder::new();
+        path.push_circle(x, y, radius);
+        path.move_to(x, y);
+        path.line_to(x + radius * cos, y + radius * sin);
+        stroke(
+            &mut picture,
+            path,
+            hue(f32::from(keypoint.octave) / 8.0),
+            0.6,
+        );
+    }
+    Ok(picture)
+}
+
+/// Chains, neighbours in different colours.
+fn edges_over(image: &GrayView<'_>, chains: &[EdgeChain]) -> Result<Pixmap, Failure> {
+    let mut picture = ground(image, 0.45)?;
+    for (index, chain) in chains.iter().enumerate() {
+        let mut path = PathBuilder::new();
+        for (k, point) in chain.points.iter().enumerate() {
+            let (x, y) = (point.x as f32, point.y as f32);
+            if k == 0 {
+                path.move_to(x, y);
+            } else {
+                path.line_to(x, y);
+            }
+        }
+        // The golden ratio spreads the hues.
+        stroke(&mut picture, path, hue(index as f32 * 0.618_034), 0.9);
+    }
+    Ok(picture)
+}
+
+fn junctions_over(image: &GrayView<'_>, junctions: &[LJunction]) -> Result<Pixmap, Failure> {
+    let mut picture = ground(image, 0.7)?;
+    for junction in junctions {
+        let [x, y] = junction.vertex.map(|value| value as f32);
+        let mut arms = PathBuilder::new();
+        for arm in 0..2 {
+            let [dx, dy] = junction.directions[arm].map(|value| value as f32);
+            let length = junction.lengths[arm] as f32;
+            arms.move_to(x, y);
+            arms.line_to(x + dx * length, y + dy * length);
+        }
+        stroke(&mut picture, arms, Color::from_rgba8(255, 196, 0, 255), 1.4);
+        let mut vertex = PathBuilder::new();
+        vertex.push_circle(x, y, 3.0);
+        stroke(
+            &mut picture,
+            vertex,
+            Color::from_rgba8(235, 40, 50, 255),
+            1.4,
+        );
+    }
+    Ok(picture)
+}
+
+/// Near red to far blue between the 2nd and 98th percentile; unknown black.
+fn depth_picture(depth: &DepthImage) -> Result<Pixmap, Failure> {
+    let (width, height) = (depth.width(), depth.height());
+    let mut known: Vec<f64> = (0..width * height)
+        .filter_map(|index| depth.get(index % width, index / width))
+        .collect();
+    known.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        known
+            .get((share * (known.len().max(1) - 1) as f64) as usize)
+            .copied()
+    };
+    let (near, far) = (at(0.02).unwrap_or(0.0), at(0.98).unwrap_or(1.0));
+    paint(width, height, |x, y| {
+        let z = depth.get(x, y)?;
+        let share = ((z - near) / (far - near).max(1e-9)).clamp(0.0, 1.0) as f32;
+        let color = hue(0.66 * share).to_color_u8();
+        Some([color.red(), color.green(), color.blue()])
+    })
+}
+
+/// The image, darkened by a factor so that what is drawn over it stands out.
+fn ground(image: &GrayView<'_>, brightness: f32) -> Result<Pixmap, Failure> {
+    paint(image.width(), image.height(), |x, y| {
+        Some([(f32::from(image.get(x, y)?) * brightness) as u8; 3])
+    })
+}
+
+fn paint(
+    width: usize,
+    height: usize,
+    color: impl Fn(usize, usize) -> Option<[u8; 3]>,
+) -> Result<Pixmap, Failure> {
+    let zoom = ZOOM as usize;
+    let side = |length: usize| u32::try_from(length * zoom).unwrap_or(u32::MAX);
+    let mut picture = Pixmap::new(side(width), side(height))
+        .ok_or_else(|| Failure::internal(format!("{width} x {height} is no picture size")))?;
+    for (index, pixel) in picture.data_mut().chunks_exact_mut(4).enumerate() {
+        let (x, y) = (index % (width * zoom) / zoom, index / (width * zoom) / zoom);
+        let [red, green, blue] = color(x, y).unwrap_or_default();
+        pixel.copy_from_slice(&[red, green, blue, 255]);
+    }
+    Ok(picture)
+}
+
+fn stroke(picture: &mut Pixmap, path: PathBuilder, color: Color, width: f32) {
+    let Some(path) = path.finish() else { return };
+    let mut paint = Paint::default();
+    paint.set_color(color);
+    paint.anti_alias = true;
+    let stroke = Stroke {
+        width,
+        ..Stroke::default()
+    };
+    // A pixel's centre lies half a pixel from its corner.
+    let transform = Transform::from_scale(ZOOM, ZOOM).pre_translate(0.5, 0.5);
+    picture.stroke_path(&path, &paint, &stroke, transform, None);
+}
+
+/// A full colour of the circle; whole numbers are red.
+fn hue(turn: f32) -> Color {
+    let channel = |shift: f32| {
+        let distance = ((turn + shift).rem_euclid(1.0) * 6.0 - 3.0).abs() - 1.0;
+        distance.clamp(0.0, 1.0)
+    };
+    let [red, green, blue] = [channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0)];
+    Color::from_rgba(red, green, blue, 1.0).unwrap_or(Color::WHITE)
+}

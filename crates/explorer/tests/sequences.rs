@@ -1,0 +1,222 @@
+//! `explorer slam` and `explorer evaluate` as a user runs them.
+
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a test that fails should say where"
+)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn explorer(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_explorer"))
+        .args(arguments)
+        .output()
+        .expect("the command starts")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = explorer(&[arguments, &["--json"]].concat());
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {errors}");
+    serde_json::from_slice(&output.stdout).expect("one JSON object on stdout")
+}
+
+/// One line on stderr, nothing on stdout, exit code 1.
+fn complaint(arguments: &[&str]) -> String {
+    let output = explorer(arguments);
+    let line = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {line}");
+    assert!(output.stdout.is_empty(), "{arguments:?} printed a result");
+    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+    assert!(
+        line.starts_with("explorer: ") && line.contains("; "),
+        "{line}"
+    );
+    line
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    folder
+}
+
+fn text(path: &Path) -> String {
+    path.display().to_string()
+}
+
+fn data(name: &str) -> Option<PathBuf> {
+    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").into();
+    let path = std::env::var_os("EXPLORER_DATA")
+        .map_or(default, PathBuf::from)
+        .join("data")
+        .join(name);
+    if path.is_dir() {
+        return Some(path);
+    }
+    println!(
+        "skipped: {} is not there (set EXPLORER_DATA)",
+        path.display()
+    );
+    None
+}
+
+/// A helix, its positions multiplied by `scale`.
+fn helix(scale: f64) -> String {
+    let line = |index: i32| {
+        let s = f64::from(index) * 0.1;
+        let [x, y, z] = [s.cos(), s.sin(), 0.2 * s].map(|value| value * scale);
+        format!("{s} {x} {y} {z} 0 0 0 1\n")
+    };
+    (0..80).map(line).collect()
+}
+
+#[test]
+fn alignment_finds_the_scale_and_none_finds_the_error() {
+    let folder = folder("evaluate");
+    let (half, truth) = (
+        text(&folder.join("half.txt")),
+        text(&folder.join("truth.txt")),
+    );
+    fs::write(&half, helix(0.5)).expect("a file");
+    fs::write(&truth, helix(1.0)).expect("a file");
+    let picture = text(&folder.join("both.svg"));
+    let report = json(&[
+        "evaluate", &half, &truth, "--align", "sim3", "--plot", &picture,
+    ]);
+    for key in ["rmse", "mean", "median", "std", "max", "pairs", "scale"] {
+        assert!(report[key].is_number(), "{key} in {report}");
+    }
+    assert!(report["rmse"].as_f64() < Some(1e-9) && report["pairs"] == 80);
+    assert!((report["scale"].as_f64().expect("a number") - 2.0).abs() < 1e-9);
+    assert!(fs::read(&picture).expect("a picture").starts_with(b"<svg"));
+    let report = json(&["evaluate", &half, &truth, "--align", "none"]);
+    assert!(report["rmse"].as_f64() > Some(0.5) && report["scale"] == 1.0);
+    // Half of every step of 0.1 is missing.
+    let drift = &report["rpe_frame"]["translation"]["mean"];
+    assert!((drift.as_f64().expect("a number") - 0.051).abs() < 1e-3);
+}
+
+#[test]
+fn bad_trajectories_are_named() {
+    let folder = folder("bad trajectories");
+    let file = |name: &str, content: &str| {
+        let path = folder.join(name);
+        fs::write(&path, content).expect("a file");
+        text(&path)
+    };
+    let truth = file("truth.txt", &helix(1.0));
+    let line = complaint(&["evaluate", "no/such.txt", &truth]);
+    assert!(line.contains("no/such.txt"), "{line}");
+    for (content, said) in [
+        ("", "empty"),
+        ("# nothing\n", "no pose"),
+        ("1 2 3\n", "3 columns where 8"),
+        ("0 nan 0 0 0 0 0 1\n", "line 1"),
+        ("500 0 0 0 0 0 0 1\n", "0 matching pairs"),
+        (
+            "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.2 2 0 0 0 0 0 1\n",
+            "one line",
+        ),
+    ] {
+        let line = complaint(&["evaluate", &file("bad.txt", content), &truth]);
+        assert!(line.contains(said), "{content:?}: {line}");
+    }
+    let usage = explorer(&["evaluate", &truth, &truth, "--align", "sim2"]);
+    assert_eq!(usage.status.code(), Some(2));
+}
+
+#[test]
+fn folders_that_are_no_sequence_are_refused() {
+    let folder = folder("no sequence");
+    let out = text(&folder.join("out"));
+    let line = complaint(&["slam", &text(&folder), "-o", &out]);
+    assert!(line.contains("neither rgb.txt nor a folder"), "{line}");
+    fs::write(folder.join("rgb.txt"), "# none\n").expect("a file");
+    let line = complaint(&["slam", &text(&folder), "-o", &out]);
+    assert!(line.contains("lists no frame"), "{line}");
+    fs::write(folder.join("rgb.txt"), "0.0 missing.png\n").expect("a file");
+    let line = complaint(&["slam", &text(&folder), "-o", &out]);
+    assert!(line.contains("missing.png cannot be read"), "{line}");
+    fs::write(folder.join("missing.png"), "not a picture").expect("a file");
+    let line = complaint(&["slam", &text(&folder), "-o", &out]);
+    assert!(line.contains("cannot be decoded"), "{line}");
+    let line = complaint(&["slam", &text(&folder), "-o", &out, "--depth", "sensor"]);
+    assert!(
+        line.contains("no frame of the sequence has a depth"),
+        "{line}"
+    );
+    let usage = explorer(&["slam", &text(&folder), "-o", &out, "--depth", "sonar"]);
+    assert_eq!(usage.status.code(), Some(2));
+}
+
+#[test]
+fn a_kitchen_becomes_a_trajectory_a_map_and_pictures() {
+    let Some(sequence) = data("seven_scenes_redkitchen_part1") else {
+        return;
+    };
+    let out = folder("kitchen");
+    let (input, output) = (text(&sequence), text(&out));
+    let report = json(&["slam", &input, "-o", &output, "--frames", "20"]);
+    for key in ["frames", "tracked", "keyframes", "ms_median", "ms_p95"] {
+        assert!(report[key].is_number(), "{key} in {report}");
+    }
+    assert_eq!(
+        (&report["frames"], &report["tracked"]),
+        (&Value::from(20), &Value::from(20))
+    );
+    for name in report["files"].as_array().expect("a list") {
+        let path = out.join(name.as_str().expect("a name"));
+        assert!(fs::metadata(&path).expect("a file").len() > 100, "{name}");
+    }
+    for name in ["features", "edges", "junctions", "depth", "trajectory"] {
+        let picture = fs::read(out.join(name).with_extension("png")).expect("a picture");
+        assert!(picture.starts_with(b"\x89PNG"), "{name}");
+    }
+    let truth = text(&sequence.join("groundtruth_tum.txt"));
+    let found = text(&out.join("trajectory.txt"));
+    let error = json(&["evaluate", &found, &truth, "--align", "se3"]);
+    assert!(
+        error["pairs"] == 20 && error["rmse"].as_f64() < Some(0.03),
+        "{error}"
+    );
+    // What slam writes is an INPUT of the other commands.
+    let cleaned = json(&["clean", &output]);
+    assert_eq!(cleaned["points"], report["points"]);
+}
+
+#[test]
+fn evaluate_gives_the_published_figures() {
+    let Some(folder) = data("trajectories") else {
+        return;
+    };
+    let truth = text(&folder.join("freiburg1_xyz-groundtruth.txt"));
+    for (name, align, pairs, rmse, scale) in [
+        ("freiburg1_xyz-rgbdslam.txt", "se3", 785, 0.013470, 1.0),
+        (
+            "freiburg1_xyz-ORB_kf_mono.txt",
+            "sim3",
+            32,
+            0.009755,
+            1.105622,
+        ),
+    ] {
+        let report = json(&[
+            "evaluate",
+            &text(&folder.join(name)),
+            &truth,
+            "--align",
+            align,
+        ]);
+        let number = |key: &str| report[key].as_f64().expect("a number");
+        assert_eq!(report["pairs"], pairs, "{name}");
+        assert!((number("rmse") - rmse).abs() < 1e-6, "{name}");
+        assert!((number("scale") - scale).abs() < 1e-6, "{name}");
+    }
+}
