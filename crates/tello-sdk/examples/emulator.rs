@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 #[cfg(feature = "video")]
 fn camera(_drone: u8) -> Option<Box<dyn VideoSource>> {
-    let camera = tello_sdk::video::TestPattern::new().ok()?;
+    let camera = tello_sdk::video::TestCard::new();
     Some(Box::new(camera))
 }
 

@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use std::net::SocketAddr;
 use std::time::Duration;
 use tello_sdk::binary::*;
-use tello_sdk::emulator::{Kinematic, Timing};
+use tello_sdk::emulator::{EmulatorConfig, Kinematic, Timing};
 use tello_sdk::{Stick, Sticks};
 
 struct Flight {
@@ -22,7 +23,10 @@ impl Flight {
     fn new(lose: u64) -> Self {
         Self {
             session: BinarySession::new(BinaryConfig::default()),
-            drone: BinaryEmulator::new(Kinematic::new(Timing::default())),
+            drone: BinaryEmulator::new(
+                EmulatorConfig::default(),
+                Kinematic::new(Timing::default()),
+            ),
             now: Duration::ZERO,
             events: Vec::new(),
             sent: Vec::new(),
@@ -46,9 +50,9 @@ impl Flight {
                 return;
             }
             self.now = next;
-            while let Some(bytes) = self.drone.poll(self.now) {
+            while let Some(transmit) = self.drone.poll(self.now) {
                 if !self.is_lost() {
-                    self.session.handle_datagram(self.now, &bytes);
+                    self.session.handle_datagram(self.now, &transmit.bytes);
                     self.drain();
                 }
             }
@@ -66,7 +70,8 @@ impl Flight {
                     self.sent
                         .extend(Frame::parse(&bytes).map(|frame| frame.message));
                     if !self.is_lost() {
-                        self.drone.receive(self.now, &bytes);
+                        let client = SocketAddr::from(([127, 0, 0, 1], 9000));
+                        self.drone.receive(self.now, client, &bytes);
                     }
                 }
             }

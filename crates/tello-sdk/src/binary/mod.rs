@@ -10,6 +10,7 @@ mod flight_data;
 mod frame;
 mod log;
 mod message;
+mod reports;
 mod session;
 mod sticks;
 

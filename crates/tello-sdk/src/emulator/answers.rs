@@ -1,8 +1,7 @@
 //! The drone's replies: values of queries, and the faulty way back.
 
-use super::faults::Impairment;
 use super::physics::Physics;
-use super::{Channel, Emulator, Transmit};
+use super::{Channel, Departure, Emulator, Lane, Transmit};
 use crate::command::{Command, Query, SdkVersion};
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -24,8 +23,8 @@ impl<P: Physics> Emulator<P> {
         let cm = |value: Option<f64>| value.unwrap_or(0.0) as i64;
         match query {
             Query::Speed => format!("{:.1}\r\n", self.speed * 100.0),
-            Query::Battery => format!("{}\r\n", self.battery as i64),
-            Query::MotorTime => format!("{}s\r\n", self.motor_time.as_secs()),
+            Query::Battery => format!("{}\r\n", self.body.battery as i64),
+            Query::MotorTime => format!("{}s\r\n", self.body.motor_time.as_secs()),
             Query::Wifi => "90\r\n".into(),
             Query::Height => format!("{}dm\r\n", cm(line.h) / 10),
             Query::Temperature => format!("{}~{}C\r\n", cm(line.templ), cm(line.temph)),
@@ -87,49 +86,24 @@ impl<P: Physics> Emulator<P> {
         channel: Channel,
         late: Duration,
     ) {
-        let leaves = self.now + late;
-        let faults = &self.config.faults;
-        if faults.is_gap(leaves) {
-            return;
-        }
-        let link = match channel {
-            Channel::Reply | Channel::ReplyFromOtherPort => faults.replies,
-            Channel::State => faults.state,
-            Channel::Video => faults.video,
+        let lane = match channel {
+            Channel::Reply | Channel::ReplyFromOtherPort => Lane::Reply,
+            Channel::State => Lane::State,
+            Channel::Video => Lane::Video,
         };
-        let link = Impairment {
-            delay: if self.answers_doubled {
-                0.0
-            } else {
-                link.delay
-            },
-            ..link
+        let transmit = Transmit {
+            answers: self.answering.filter(|_| lane != Lane::State),
+            ..Transmit::new(channel, to, bytes)
         };
-        let latency = match channel {
-            Channel::Video => Duration::ZERO,
-            _ => self.config.timing.one_way(self.random.unit()),
+        let departure = Departure {
+            lane,
+            transmit,
+            late,
+            prompt: self.answers_doubled,
         };
-        let times = if late.is_zero() || late < Duration::from_millis(200) {
-            self.channels
-                .departures(channel, leaves + latency, &link, &mut self.random)
-        } else {
-            // A reply that the drone itself holds back does not hold back the others.
-            [Some(leaves + latency), None]
-        };
-        for at in times.into_iter().flatten() {
-            let key = (at, self.channels.next_sequence());
-            let answers = self.answering.filter(|_| channel != Channel::State);
-            let bytes = bytes.clone();
-            self.downlink.insert(
-                key,
-                Transmit {
-                    channel,
-                    to,
-                    bytes,
-                    answers,
-                },
-            );
-        }
+        let (timing, faults) = (&self.config.timing, &self.config.faults);
+        self.link
+            .send(self.now, timing, faults, &mut self.random, departure);
     }
 }
 

@@ -61,7 +61,7 @@ impl Timing {
     }
 
     /// One way of a round trip at quantile `u` in 0..1, interpolated between the five given.
-    pub(super) fn one_way(&self, u: f64) -> Duration {
+    pub(crate) fn one_way(&self, u: f64) -> Duration {
         let marks = [0.0, 0.5, 0.95, 0.99, 1.0];
         let mut trip = self.round_trip[4];
         for i in 0..4 {
@@ -87,6 +87,9 @@ pub struct EmulatorConfig {
     pub battery: f64,
     /// Below this charge a take-off is refused and the drone lands. Default 5.
     pub min_battery: f64,
+    /// Above this temperature a take-off is refused and the drone lands, degrees Celsius. Default 95 (an assumption: no
+    /// limit is published).
+    pub max_temperature: f64,
     /// Drain in the air, percent per minute. Default 7.7 (13 minutes of flight at best).
     pub drain: f64,
     /// Where state lines go on the client's address. Default 8890.
@@ -114,6 +117,7 @@ impl Default for EmulatorConfig {
             serial_number: "0TQEMULATED001".into(),
             battery: 87.0,
             min_battery: 5.0,
+            max_temperature: 95.0,
             drain: 7.7,
             state_port: 8890,
             video_port: 11_111,

@@ -54,9 +54,16 @@ pub struct Faults {
     pub auto_land_at: Option<Duration>,
     /// Probability that a datagram that begins with a parameter set is lost (on top of `video`).
     pub parameter_set_loss: f64,
-    /// Between these times the downward camera sees no texture: the velocity reads zero and position drifts.
+    /// Probability that a picture is padded with zeros so that its last datagram is a full one.
+    pub exact_multiples: f64,
+    /// From this time on the charge is at most so many percent.
+    pub battery_falls: Option<(Duration, f64)>,
+    /// From this time on it is at least so hot inside, degrees Celsius.
+    pub heat: Option<(Duration, f64)>,
+    /// Between these times the downward camera sees no texture: the velocity reads zero, odometry is not valid, and
+    /// motions are refused with `error No valid imu`.
     pub vision_loss: Option<(Duration, Duration)>,
-    /// Probability, per log record, that the visual odometry jumps (binary protocol).
+    /// Probability, per record, that the visual odometry jumps by hundreds of metres (binary protocol).
     pub odometry_jump: f64,
 }
 
@@ -145,8 +152,14 @@ impl Faults {
         }
     }
 
+    /// Whether the downward camera sees nothing at this time.
+    pub(crate) fn is_blind(&self, at: Duration) -> bool {
+        self.vision_loss
+            .is_some_and(|(from, to)| (from..to).contains(&at))
+    }
+
     /// Whether nothing passes at this time.
-    pub(super) fn is_gap(&self, at: Duration) -> bool {
+    pub(crate) fn is_gap(&self, at: Duration) -> bool {
         self.gap.is_some_and(|(from, to)| (from..to).contains(&at))
     }
 }

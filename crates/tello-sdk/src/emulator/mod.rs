@@ -9,30 +9,37 @@
 //! move is not answered.
 
 mod answers;
-mod channel;
+mod body;
+mod camera;
 mod config;
 mod faults;
 #[cfg(feature = "std")]
 mod kinematic;
+mod link;
 mod obey;
 mod physics;
+mod presets;
 pub(crate) mod random;
 mod sensors;
 #[cfg(feature = "std")]
 pub mod udp;
 
+pub use camera::VideoSource;
 pub use config::{EmulatorConfig, Timing, WhenBusy};
 pub use faults::{Faults, Impairment};
 #[cfg(feature = "std")]
 pub use kinematic::Kinematic;
 pub use physics::{Action, Physics, Progress, Truth};
+pub use presets::PRESETS;
+
+pub(crate) use body::Body;
+pub(crate) use camera::{Camera, loses_parameter_set, pad_to_multiple};
+pub(crate) use link::{Departure, Lane, Link};
 
 use crate::command::Command;
 use alloc::boxed::Box;
-use alloc::collections::BTreeMap;
 use alloc::string::String;
 use alloc::vec::Vec;
-use channel::Channels;
 use core::net::SocketAddr;
 use core::time::Duration;
 use random::Random;
@@ -74,37 +81,48 @@ pub struct Received {
     pub is_copy: bool,
 }
 
-/// Where the pictures come from: access units in Annex B byte-stream format, one per call.
-pub trait VideoSource: Send {
-    /// The next access unit, or `None` to skip this frame. Called every [`VideoSource::period`].
-    fn next_unit(&mut self, now: Duration) -> Option<Vec<u8>>;
+/// An emulated drone of either protocol as its sockets see it.
+pub trait Device {
+    /// A datagram arrives at the drone's end of the link at `at`.
+    fn receive(&mut self, at: Duration, from: SocketAddr, bytes: &[u8]);
 
-    /// Time between frames.
-    fn period(&self) -> Duration {
-        Duration::from_nanos(33_333_333)
-    }
+    /// The next datagram that has left the drone by `now`.
+    fn poll(&mut self, now: Duration) -> Option<Transmit>;
+
+    /// When something happens next without input.
+    fn next_deadline(&self) -> Duration;
+
+    /// What happened to it so far.
+    fn summary(&self) -> Summary;
+}
+
+/// What happened to an emulated drone.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Summary {
+    /// Commands that reached it.
+    pub commands: usize,
+    /// Pictures that it took.
+    pub pictures: u64,
+    /// Charge, percent.
+    pub battery: f64,
+    /// Whether its motors turn.
+    pub flying: bool,
 }
 
 /// One drone.
 pub struct Emulator<P> {
     config: EmulatorConfig,
-    physics: P,
+    body: Body<P>,
     random: Random,
     now: Duration,
-    channels: Channels,
-    downlink: BTreeMap<(Duration, u64), Transmit>,
+    link: Link,
     client: Option<SocketAddr>,
     running: Option<Running>,
-    stepped: Duration,
     target: Duration,
     next_state: Duration,
-    next_video: Option<Duration>,
-    video: Option<Box<dyn VideoSource>>,
+    camera: Camera,
     last_command: Duration,
     took_off: Duration,
-    lands_itself: bool,
-    battery: f64,
-    motor_time: Duration,
     speed: f64,
     height_offset: f64,
     log: Vec<Received>,
@@ -123,29 +141,22 @@ struct Running {
 
 /// Bound of [`Emulator::log`].
 const LOG_LIMIT: usize = 4096;
-/// Step of the movement while something runs.
-const STEP: Duration = Duration::from_millis(20);
 
 impl<P: Physics> Emulator<P> {
     /// A drone at power-on, on the ground.
     pub fn new(config: EmulatorConfig, physics: P) -> Self {
         Self {
             random: Random::new(config.seed),
+            body: Body::new(physics, config.battery),
             now: Duration::ZERO,
-            channels: Channels::default(),
-            downlink: BTreeMap::new(),
+            link: Link::default(),
             client: None,
             running: None,
-            stepped: Duration::ZERO,
             target: Duration::ZERO,
             next_state: Duration::ZERO,
-            next_video: None,
-            video: None,
+            camera: Camera::default(),
             last_command: Duration::ZERO,
             took_off: Duration::ZERO,
-            lands_itself: false,
-            battery: config.battery,
-            motor_time: Duration::ZERO,
             speed: config.timing.speed,
             height_offset: 0.0,
             log: Vec::new(),
@@ -153,7 +164,6 @@ impl<P: Physics> Emulator<P> {
             answering: None,
             answers_doubled: false,
             refused_at: None,
-            physics,
             config,
         }
     }
@@ -161,39 +171,29 @@ impl<P: Physics> Emulator<P> {
     /// Gives it a camera.
     #[must_use]
     pub fn with_video(mut self, source: Box<dyn VideoSource>) -> Self {
-        self.video = Some(source);
+        self.camera.source = Some(source);
         self
     }
 
     /// A datagram arrives at the drone's end of the link at `at` (the link's delay and faults come on top).
     pub fn receive(&mut self, at: Duration, from: SocketAddr, bytes: &[u8]) {
         self.run_to(at);
-        if self.config.faults.is_gap(self.now) {
-            return;
-        }
-        let latency = self.config.timing.one_way(self.random.unit());
-        let link = self.config.faults.commands;
-        self.channels
-            .accept(self.now, latency, &link, &mut self.random, from, bytes);
+        let (timing, faults) = (&self.config.timing, &self.config.faults);
+        self.link
+            .accept(self.now, timing, faults, &mut self.random, from, bytes);
     }
 
     /// The next datagram that has left the drone by `now`; `None` until [`Emulator::next_deadline`].
     pub fn poll(&mut self, now: Duration) -> Option<Transmit> {
         self.run_to(now);
-        let first = self.downlink.first_entry()?;
-        (first.key().0 <= self.now).then(|| first.remove())
+        self.link.delivered(self.now)
     }
 
     /// When something happens next without input.
     #[must_use]
     pub fn next_deadline(&self) -> Duration {
-        let sent = self.downlink.first_key_value().map(|(&(at, _), _)| at);
-        let arrives = self.channels.next_arrival();
-        [Some(self.next_step()), sent, arrives]
-            .into_iter()
-            .flatten()
-            .min()
-            .unwrap_or(Duration::MAX)
+        let sent = self.link.next_delivery().unwrap_or(Duration::MAX);
+        self.next_event().min(sent)
     }
 
     /// The commands that reached the drone, the first 4096 of them.
@@ -205,35 +205,44 @@ impl<P: Physics> Emulator<P> {
     /// The model of movement.
     #[must_use]
     pub fn physics(&self) -> &P {
-        &self.physics
+        &self.body.physics
     }
 
     /// The model of movement, to change the world under the drone.
     pub fn physics_mut(&mut self) -> &mut P {
-        &mut self.physics
+        &mut self.body.physics
     }
 
     /// Charge, percent.
     #[must_use]
     pub fn battery(&self) -> f64 {
-        self.battery
+        self.body.battery
     }
 
     /// Whether the motors turn.
     #[must_use]
     pub fn is_flying(&self) -> bool {
-        self.physics.truth().motors
+        self.body.physics.truth().motors
+    }
+
+    /// How many commands reached the drone.
+    #[must_use]
+    pub fn commands(&self) -> usize {
+        self.arrived
+    }
+
+    /// How many pictures were taken.
+    #[must_use]
+    pub fn pictures(&self) -> u64 {
+        self.camera.units
     }
 
     fn next_step(&self) -> Duration {
-        let busy = self.running.is_some() || self.lands_itself;
-        let step = if busy {
-            self.stepped + STEP
-        } else {
-            self.next_state
-        };
-        let video = self.next_video.unwrap_or(Duration::MAX);
-        step.min(self.next_state).min(video)
+        let step = self.body.next_step(self.running.is_some());
+        let video = self.camera.next.unwrap_or(Duration::MAX);
+        step.unwrap_or(Duration::MAX)
+            .min(self.next_state)
+            .min(video)
     }
 
     /// Lets everything up to `now` happen in the order of time.
@@ -242,7 +251,7 @@ impl<P: Physics> Emulator<P> {
         while self.next_event() <= now {
             let at = self.next_event();
             self.step_to(at);
-            while let Some(packet) = self.channels.arrived(at) {
+            while let Some(packet) = self.link.arrived(at) {
                 self.obey(packet);
             }
         }
@@ -250,38 +259,27 @@ impl<P: Physics> Emulator<P> {
     }
 
     fn next_event(&self) -> Duration {
-        self.channels
-            .next_arrival()
-            .unwrap_or(Duration::MAX)
-            .min(self.next_step())
+        let arrival = self.link.next_arrival().unwrap_or(Duration::MAX);
+        arrival.min(self.next_step())
     }
 
     fn step_to(&mut self, at: Duration) {
-        let elapsed = at.saturating_sub(self.stepped);
         self.now = self.now.max(at);
-        self.stepped = at;
-        self.physics.advance(at);
-        if self.physics.truth().motors {
-            self.motor_time += elapsed;
-            self.battery =
-                (self.battery - self.config.drain * elapsed.as_secs_f64() / 60.0).max(0.0);
-        }
+        self.body.advance(at, &self.config);
         self.end_of_action();
         self.land_by_itself();
         if self.next_state <= at {
             self.next_state = at + self.config.state_period.max(Duration::from_millis(1));
             self.send_state();
         }
-        if self.next_video.is_some_and(|next| next <= at) {
-            self.send_video(at);
-        }
+        self.send_video(at);
     }
 
     fn end_of_action(&mut self) {
-        let Progress::Ended(result) = self.physics.progress() else {
+        let Progress::Ended(result) = self.body.physics.progress() else {
             return;
         };
-        self.lands_itself = false;
+        self.body.lands_itself = false;
         let Some(done) = self.running.take() else {
             return;
         };
@@ -294,23 +292,37 @@ impl<P: Physics> Emulator<P> {
     }
 
     fn land_by_itself(&mut self) {
-        if self.lands_itself || !self.physics.truth().motors {
+        let runs = |running: &Running| running.command == Command::Land;
+        if self.running.as_ref().is_some_and(runs) {
             return;
         }
-        let silent = self.now.saturating_sub(self.last_command) >= self.config.auto_land;
-        let forced = self
-            .config
-            .faults
-            .auto_land_at
-            .is_some_and(|at| (at..at + Duration::from_secs(1)).contains(&self.now));
-        let empty = self.battery < self.config.min_battery;
-        let lands = self
-            .running
-            .as_ref()
-            .is_some_and(|r| r.command == Command::Land);
-        if (silent && self.running.is_none() || forced || empty) && !lands {
+        let silence = self.now.saturating_sub(self.last_command);
+        let busy = self.running.is_some();
+        if self.body.land_by_itself(silence, busy, &self.config) {
             self.running = None;
-            self.lands_itself = self.physics.begin(self.now, Action::Land).is_ok();
+        }
+    }
+}
+
+impl<P: Physics> Device for Emulator<P> {
+    fn receive(&mut self, at: Duration, from: SocketAddr, bytes: &[u8]) {
+        Self::receive(self, at, from, bytes);
+    }
+
+    fn poll(&mut self, now: Duration) -> Option<Transmit> {
+        Self::poll(self, now)
+    }
+
+    fn next_deadline(&self) -> Duration {
+        Self::next_deadline(self)
+    }
+
+    fn summary(&self) -> Summary {
+        Summary {
+            commands: self.arrived,
+            pictures: self.camera.units,
+            battery: self.body.battery,
+            flying: self.is_flying(),
         }
     }
 }

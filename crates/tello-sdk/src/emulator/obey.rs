@@ -1,9 +1,9 @@
 //! What the drone does with each command.
 
-use super::channel::Packet;
+use super::link::Packet;
 use super::physics::{Action, Physics};
 use super::{Channel, Emulator, LOG_LIMIT, Received, Running, WhenBusy};
-use crate::command::{Class, Command, ParseCommandError, SdkVersion};
+use crate::command::{Class, Command, FrameRate, ParseCommandError, SdkVersion};
 use crate::reply::Refusal;
 use crate::session::Sticks;
 use alloc::format;
@@ -66,7 +66,7 @@ impl<P: Physics> Emulator<P> {
             Class::Setting => self.set(&command, from),
             Class::Once => {
                 self.client = None;
-                self.next_video = None;
+                self.camera.next = None;
                 if command != Command::Reboot {
                     self.answer(from, "OK, drone will reboot in 3s");
                 }
@@ -78,8 +78,15 @@ impl<P: Physics> Emulator<P> {
         match command {
             Command::EnterSdk => self.client = Some(from),
             Command::SetSpeed(speed) => self.speed = speed.meters_per_s(),
-            Command::StreamOn if self.video.is_some() => self.next_video = Some(self.now),
-            Command::StreamOff => self.next_video = None,
+            Command::StreamOn => self.camera.start(self.now),
+            Command::StreamOff => self.camera.next = None,
+            Command::SetFrameRate(rate) => {
+                self.camera.every = match rate {
+                    FrameRate::High => 1,
+                    FrameRate::Middle => 2,
+                    FrameRate::Low => 6,
+                }
+            }
             Command::Ports { state, video } => {
                 self.config.state_port = state.number();
                 self.config.video_port = video.number();
@@ -111,7 +118,7 @@ impl<P: Physics> Emulator<P> {
                 throttle: *throttle,
                 yaw: *yaw,
             };
-            self.physics.set_sticks(self.now, sticks);
+            self.body.physics.set_sticks(self.now, sticks);
         }
     }
 
@@ -119,21 +126,21 @@ impl<P: Physics> Emulator<P> {
         match command {
             Command::Emergency => {
                 self.running = None;
-                self.lands_itself = false;
-                let _ = self.physics.begin(self.now, Action::CutMotors);
+                self.body.lands_itself = false;
+                let _ = self.body.physics.begin(self.now, Action::CutMotors);
                 if !self.config.faults.silent_emergency {
                     self.answer(from, "ok");
                 }
             }
             Command::Land => self.land(from),
             Command::MotorOff => {
-                let _ = self.physics.begin(self.now, Action::Idle(false));
+                let _ = self.body.physics.begin(self.now, Action::Idle(false));
                 self.answer(from, "ok");
             }
             _ => {
                 self.running = None;
-                self.lands_itself = false;
-                let _ = self.physics.begin(self.now, Action::Hover);
+                self.body.lands_itself = false;
+                let _ = self.body.physics.begin(self.now, Action::Hover);
                 self.answer(from, "ok");
                 self.say(
                     from,
@@ -150,7 +157,7 @@ impl<P: Physics> Emulator<P> {
             .running
             .as_ref()
             .is_some_and(|r| r.command == Command::Land);
-        if landing || self.lands_itself {
+        if landing || self.body.lands_itself {
             return self.refuse_busy(from);
         }
         let since = self.now.saturating_sub(self.took_off);
@@ -164,7 +171,7 @@ impl<P: Physics> Emulator<P> {
         {
             return;
         }
-        match self.physics.begin(self.now, Action::Land) {
+        match self.body.physics.begin(self.now, Action::Land) {
             Ok(()) => {
                 self.running = Some(Running {
                     command: Command::Land,
@@ -180,17 +187,17 @@ impl<P: Physics> Emulator<P> {
         if self.running.is_some() {
             return self.refuse_busy(from);
         }
-        if self.lands_itself {
+        if self.body.lands_itself {
             return self.answer(from, "error Auto land");
         }
         if let Some(refusal) = self.refusal(&command) {
             return self.answer(from, text_of(refusal));
         }
-        let Some(action) = self.action(&command) else {
-            let _ = self.physics.begin(self.now, Action::Hover);
+        let Some(action) = Action::of(&command, self.speed) else {
+            let _ = self.body.physics.begin(self.now, Action::Hover);
             return self.answer(from, text_of(Refusal::NotValidMarker));
         };
-        match self.physics.begin(self.now, action) {
+        match self.body.physics.begin(self.now, action) {
             Ok(()) => {
                 if action == Action::TakeOff {
                     self.height_offset = 0.35 * self.random.unit();
@@ -208,11 +215,11 @@ impl<P: Physics> Emulator<P> {
     /// Reasons of the drone itself, and injected ones.
     fn refusal(&mut self, command: &Command) -> Option<Refusal> {
         let faults = &self.config.faults;
-        if self.now < faults.imu_invalid_until {
+        if self.now < faults.imu_invalid_until || faults.is_blind(self.now) {
             return Some(Refusal::NoValidImu);
         }
         let lifts = matches!(command, Command::TakeOff | Command::ThrowFly);
-        if lifts && self.battery < self.config.min_battery {
+        if lifts && self.body.is_unfit(&self.config) {
             return Some(Refusal::Plain);
         }
         if self.answers_doubled
@@ -235,42 +242,6 @@ impl<P: Physics> Emulator<P> {
             return refusal;
         }
         None
-    }
-
-    fn action(&self, command: &Command) -> Option<Action> {
-        let straight = |offset| {
-            Some(Action::Move {
-                offset,
-                speed: self.speed,
-            })
-        };
-        match command {
-            Command::TakeOff | Command::ThrowFly => Some(Action::TakeOff),
-            Command::MotorOn => Some(Action::Idle(true)),
-            Command::Forward(d) => straight([d.meters(), 0.0, 0.0]),
-            Command::Back(d) => straight([-d.meters(), 0.0, 0.0]),
-            Command::Left(d) => straight([0.0, d.meters(), 0.0]),
-            Command::Right(d) => straight([0.0, -d.meters(), 0.0]),
-            Command::Up(d) => straight([0.0, 0.0, d.meters()]),
-            Command::Down(d) => straight([0.0, 0.0, -d.meters()]),
-            Command::Clockwise(t) => Some(Action::Turn {
-                degrees: f64::from(t.degrees()),
-            }),
-            Command::CounterClockwise(t) => Some(Action::Turn {
-                degrees: -f64::from(t.degrees()),
-            }),
-            Command::Go { to, speed } => Some(Action::Move {
-                offset: to.meters(),
-                speed: speed.meters_per_s(),
-            }),
-            Command::Curve { arc, speed } => Some(Action::Arc {
-                via: arc.via().meters(),
-                to: arc.to().meters(),
-                speed: f64::from(speed.cm_per_s()) / 100.0,
-            }),
-            Command::Flip(_) => Some(Action::Flip),
-            _ => None,
-        }
     }
 
     fn refuse_busy(&mut self, from: SocketAddr) {
@@ -297,6 +268,41 @@ impl<P: Physics> Emulator<P> {
             SdkVersion::V2_0 => "20",
             SdkVersion::V3_0 | SdkVersion::Rmtt => "30",
         })
+    }
+}
+
+impl Action {
+    /// What a motion asks for; `speed`, m/s, is that of moves without one of their own. `None` for what needs a pad and
+    /// for commands that do not move the drone.
+    pub(crate) fn of(command: &Command, speed: f64) -> Option<Self> {
+        let straight = |offset| Some(Self::Move { offset, speed });
+        match command {
+            Command::TakeOff | Command::ThrowFly => Some(Self::TakeOff),
+            Command::MotorOn => Some(Self::Idle(true)),
+            Command::Forward(d) => straight([d.meters(), 0.0, 0.0]),
+            Command::Back(d) => straight([-d.meters(), 0.0, 0.0]),
+            Command::Left(d) => straight([0.0, d.meters(), 0.0]),
+            Command::Right(d) => straight([0.0, -d.meters(), 0.0]),
+            Command::Up(d) => straight([0.0, 0.0, d.meters()]),
+            Command::Down(d) => straight([0.0, 0.0, -d.meters()]),
+            Command::Clockwise(t) => Some(Self::Turn {
+                degrees: f64::from(t.degrees()),
+            }),
+            Command::CounterClockwise(t) => Some(Self::Turn {
+                degrees: -f64::from(t.degrees()),
+            }),
+            Command::Go { to, speed } => Some(Self::Move {
+                offset: to.meters(),
+                speed: speed.meters_per_s(),
+            }),
+            Command::Curve { arc, speed } => Some(Self::Arc {
+                via: arc.via().meters(),
+                to: arc.to().meters(),
+                speed: f64::from(speed.cm_per_s()) / 100.0,
+            }),
+            Command::Flip(_) => Some(Self::Flip),
+            _ => None,
+        }
     }
 }
 

@@ -3,11 +3,11 @@
 //! Each drone has an address of its own (consecutive ones from [`ServeConfig::address`]), because clients tell drones
 //! apart by source address; its state and video sockets are bound to that address too. One thread per drone.
 
-use super::{Channel, Emulator, EmulatorConfig, Kinematic, VideoSource};
+use super::{Channel, Device, Emulator, EmulatorConfig, Kinematic, Summary, VideoSource};
 use crate::binary::BinaryEmulator;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-use core::net::{IpAddr, Ipv4Addr, SocketAddr};
+use core::net::{Ipv4Addr, SocketAddr};
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use std::net::UdpSocket;
@@ -67,11 +67,12 @@ pub enum ServeError {
 /// Makes the camera of the drone with this index; `None` for a drone without one.
 pub type Cameras<'a> = &'a (dyn Fn(u8) -> Option<Box<dyn VideoSource>> + Sync);
 
-/// Serves emulated drones without cameras until `stop` is set; returns within about 50 ms then.
+/// Serves emulated drones without cameras until `stop` is set; returns within about 50 ms then, with what happened to
+/// each drone.
 ///
 /// # Errors
 /// A socket cannot be bound; then nothing is served.
-pub fn serve(config: &ServeConfig, stop: &AtomicBool) -> Result<(), ServeError> {
+pub fn serve(config: &ServeConfig, stop: &AtomicBool) -> Result<Vec<Summary>, ServeError> {
     serve_with_cameras(config, &|_| None, stop)
 }
 
@@ -83,64 +84,97 @@ pub fn serve_with_cameras(
     config: &ServeConfig,
     cameras: Cameras<'_>,
     stop: &AtomicBool,
-) -> Result<(), ServeError> {
-    let drones: Vec<Drone> = (0..config.count)
-        .map(|index| Drone::bind(config, index))
+) -> Result<Vec<Summary>, ServeError> {
+    let sockets: Vec<DroneSockets> = (0..config.count)
+        .map(|index| DroneSockets::bind(config.address_of(index)?))
         .collect::<Result<_, _>>()?;
-    std::thread::scope(|scope| {
-        for (index, drone) in (0_u8..).zip(drones) {
-            if config.binary {
-                scope.spawn(move || drone.run_binary(stop));
-            } else {
-                scope.spawn(move || drone.run(cameras(index), stop));
-            }
-        }
+    let summaries = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0_u8..)
+            .zip(&sockets)
+            .map(|(index, sockets)| {
+                scope.spawn(move || config.run(index, sockets, cameras(index), stop))
+            })
+            .collect();
+        threads
+            .into_iter()
+            .map(|thread| thread.join().unwrap_or_default())
+            .collect()
     });
-    Ok(())
+    Ok(summaries)
 }
 
-struct Drone {
-    config: EmulatorConfig,
+impl ServeConfig {
+    /// The command address of the drone with this index.
+    ///
+    /// # Errors
+    /// The address range ends before it.
+    pub fn address_of(&self, index: u8) -> Result<SocketAddr, ServeError> {
+        let [a, b, c, last] = self.address.octets();
+        let last = last.checked_add(index).ok_or(ServeError::Addresses {
+            first: self.address,
+            count: self.count,
+        })?;
+        Ok(SocketAddr::from(([a, b, c, last], self.command_port)))
+    }
+
+    fn run(
+        &self,
+        index: u8,
+        sockets: &DroneSockets,
+        camera: Option<Box<dyn VideoSource>>,
+        stop: &AtomicBool,
+    ) -> Summary {
+        let drone = EmulatorConfig {
+            seed: self.drone.seed.wrapping_add(u64::from(index)),
+            serial_number: alloc::format!("{}{index}", self.drone.serial_number),
+            ..self.drone.clone()
+        };
+        let physics = Kinematic::new(drone.timing);
+        if self.binary {
+            let mut drone = BinaryEmulator::new(drone, physics);
+            if let Some(camera) = camera {
+                drone = drone.with_video(camera);
+            }
+            sockets.run(&mut drone, stop)
+        } else {
+            let mut drone = Emulator::new(drone, physics);
+            if let Some(camera) = camera {
+                drone = drone.with_video(camera);
+            }
+            sockets.run(&mut drone, stop)
+        }
+    }
+}
+
+/// The sockets of one drone, all on one address, because clients tell drones apart by it.
+#[derive(Debug)]
+pub struct DroneSockets {
     command: UdpSocket,
     other: UdpSocket,
     state: UdpSocket,
     video: UdpSocket,
 }
 
-impl Drone {
-    fn bind(config: &ServeConfig, index: u8) -> Result<Self, ServeError> {
-        let too_many = ServeError::Addresses {
-            first: config.address,
-            count: config.count,
-        };
-        let [a, b, c, last] = config.address.octets();
-        let last = last.checked_add(index).ok_or(too_many)?;
-        let ip = IpAddr::V4(Ipv4Addr::new(a, b, c, last));
+impl DroneSockets {
+    /// Binds them; the port is the command socket's.
+    ///
+    /// # Errors
+    /// The address or port is in use or not this machine's.
+    pub fn bind(address: SocketAddr) -> Result<Self, ServeError> {
         let bind = |port| {
-            let address = SocketAddr::new(ip, port);
+            let address = SocketAddr::new(address.ip(), port);
             UdpSocket::bind(address).map_err(|source| ServeError::Bind { address, source })
         };
-        let seed = config.drone.seed.wrapping_add(u64::from(index));
-        let serial_number = alloc::format!("{}{index}", config.drone.serial_number);
         Ok(Self {
-            config: EmulatorConfig {
-                seed,
-                serial_number,
-                ..config.drone.clone()
-            },
-            command: bind(config.command_port)?,
+            command: bind(address.port())?,
             other: bind(0)?,
             state: bind(0)?,
             video: bind(0)?,
         })
     }
 
-    fn run(self, camera: Option<Box<dyn VideoSource>>, stop: &AtomicBool) {
-        let physics = Kinematic::new(self.config.timing);
-        let mut drone = Emulator::new(self.config.clone(), physics);
-        if let Some(camera) = camera {
-            drone = drone.with_video(camera);
-        }
+    /// Lets a drone, of whatever physics, speak through them until `stop` is set; returns within about 50 ms then.
+    pub fn run(&self, drone: &mut impl Device, stop: &AtomicBool) -> Summary {
         let start = Instant::now();
         let mut buffer = [0_u8; 2048];
         while !stop.load(Ordering::Relaxed) {
@@ -163,25 +197,6 @@ impl Drone {
                 drone.receive(start.elapsed(), from, bytes);
             }
         }
-    }
-
-    /// The binary protocol: video is not sent.
-    fn run_binary(self, stop: &AtomicBool) {
-        let mut drone = BinaryEmulator::new(Kinematic::new(self.config.timing));
-        let start = Instant::now();
-        let mut client = None;
-        let mut buffer = [0_u8; 2048];
-        while !stop.load(Ordering::Relaxed) {
-            while let (Some(bytes), Some(to)) = (drone.poll(start.elapsed()), client) {
-                let _ = self.command.send_to(&bytes, to);
-            }
-            let wait = drone.next_deadline().saturating_sub(start.elapsed());
-            let wait = wait.clamp(Duration::from_millis(1), Duration::from_millis(50));
-            let _ = self.command.set_read_timeout(Some(wait));
-            if let Ok((length, from)) = self.command.recv_from(&mut buffer) {
-                client = Some(from);
-                drone.receive(start.elapsed(), buffer.get(..length).unwrap_or_default());
-            }
-        }
+        drone.summary()
     }
 }

@@ -4,7 +4,7 @@
 //! with the maker's own binary does not cover a build from source.
 
 use super::assembler::AccessUnit;
-use crate::emulator::VideoSource;
+use super::test_card::{CardReading, TestCard};
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::time::Duration;
@@ -42,6 +42,16 @@ pub struct Picture {
     pub rgb: Vec<u8>,
     /// When the first datagram came.
     pub at: Duration,
+}
+
+impl Picture {
+    /// The test card in it, if it shows one.
+    #[must_use]
+    pub fn card(&self) -> Option<CardReading> {
+        TestCard::read(self.width, |x, y| {
+            self.rgb.get((y * self.width + x) * 3 + 1).copied()
+        })
+    }
 }
 
 /// Decodes access units.
@@ -158,69 +168,6 @@ impl Encoder {
     }
 }
 
-/// A camera for emulated drones: a grey ramp with a bright bar that moves one sixtieth of the width per picture.
-pub struct TestPattern {
-    encoder: Encoder,
-    rgb: Vec<u8>,
-    frame: usize,
-    /// The bar is back after sixty pictures, and two key frames: from then on nothing is encoded any more.
-    cycle: Vec<Vec<u8>>,
-}
-
-/// Pictures until the bar is back.
-const CYCLE: usize = 60;
-
-impl TestPattern {
-    /// A camera of 960 x 720 pixels at 2 Mbit/s.
-    ///
-    /// # Errors
-    /// The library cannot be initialised.
-    pub fn new() -> Result<Self, CodecError> {
-        Self::with_size(960, 720)
-    }
-
-    /// A camera of another size.
-    ///
-    /// # Errors
-    /// An odd, empty or too large size, or the library cannot be initialised.
-    pub fn with_size(width: usize, height: usize) -> Result<Self, CodecError> {
-        let encoder = Encoder::new(width, height, 2_000_000)?;
-        Ok(Self {
-            encoder,
-            rgb: alloc::vec![0; width * height * 3],
-            frame: 0,
-            cycle: Vec::new(),
-        })
-    }
-
-    fn paint(&mut self) {
-        let width = self.encoder.width;
-        let bar = self.frame % CYCLE * width / CYCLE;
-        for (index, pixel) in self.rgb.chunks_exact_mut(3).enumerate() {
-            let (column, row) = (index % width, index / width);
-            let lit = (bar..bar + width / CYCLE).contains(&column);
-            let grey = if lit {
-                250
-            } else {
-                (column * 100 / width + row % 64) as u8
-            };
-            pixel.fill(grey);
-        }
-    }
-}
-
-impl VideoSource for TestPattern {
-    fn next_unit(&mut self, _now: Duration) -> Option<Vec<u8>> {
-        let index = self.frame % CYCLE;
-        if self.cycle.len() <= index {
-            self.paint();
-            self.cycle.push(self.encoder.encode(&self.rgb).ok()?);
-        }
-        self.frame += 1;
-        self.cycle.get(index).cloned()
-    }
-}
-
 fn library(error: openh264::Error) -> CodecError {
     CodecError::Library(error.to_string())
 }
@@ -228,10 +175,13 @@ fn library(error: openh264::Error) -> CodecError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::video::{Assembler, AssemblerConfig, datagrams};
+    use crate::emulator::VideoSource;
+    use crate::video::{
+        Assembler, AssemblerConfig, Mosaic, MosaicEncoder, SQUARE, TestCard, datagrams,
+    };
 
     fn units(lose: impl Fn(usize) -> bool) -> Vec<AccessUnit> {
-        let mut camera = TestPattern::with_size(320, 240).unwrap();
+        let mut camera = TestCard::new();
         let mut assembler = Assembler::new(AssemblerConfig::default());
         let (mut units, mut count) = (Vec::new(), 0);
         for frame in 0..65_u32 {
@@ -248,19 +198,67 @@ mod tests {
     }
 
     #[test]
-    fn every_picture_is_decoded_and_the_bar_is_where_it_was_painted() {
+    fn every_card_is_decoded_and_read() {
         let mut decoder = Decoder::new().unwrap();
         let units = units(|_| false);
-        let pictures: Vec<_> = units
+        let cards: Vec<_> = units
             .iter()
             .filter_map(|unit| decoder.decode(unit))
+            .filter_map(|picture| picture.card())
             .collect();
-        assert_eq!((units.len(), pictures.len(), decoder.errors()), (65, 65, 0));
-        let last = &pictures[40];
-        assert_eq!((last.width, last.height), (320, 240));
-        let row = &last.rgb[120 * 320 * 3..121 * 320 * 3];
-        let brightest = (0..320).max_by_key(|&column| row[column * 3]).unwrap();
-        assert!(brightest.abs_diff(40 * 320 / 60) <= 6, "{brightest}");
+        assert_eq!((units.len(), cards.len(), decoder.errors()), (65, 65, 0));
+        for (frame, card) in (0..).zip(cards) {
+            assert_eq!((card.frame, card.clock_ms), (frame, frame * 33));
+        }
+    }
+
+    /// The oracle for our own encoder: another's decoder gives back every plane to the byte.
+    #[test]
+    fn random_mosaics_are_decoded_exactly() {
+        let mut random = crate::emulator::random::Random::new(5);
+        let mut encoder = MosaicEncoder::new();
+        let mut decoder = openh264::decoder::Decoder::new().unwrap();
+        let mut picture = Mosaic::new(20, 15);
+        for frame in 0..40 {
+            let changes = [300, 0, 1, 40, 299][frame % 5];
+            for _ in 0..changes {
+                let (word, place) = (random.next(), random.next());
+                let (column, row) = (place as usize % 20, (place >> 32) as usize % 15);
+                // Mostly small steps, some as large as they get.
+                let [a, b, c, big, ..] = word.to_le_bytes();
+                let color = if big < 64 {
+                    [a, b, c]
+                } else {
+                    [a % 4, b % 3, c % 40].map(|v| 100 + v)
+                };
+                picture.set(column, row, color);
+            }
+            let stream = encoder.encode(&picture, frame % 13 == 0);
+            let decoded = decoder
+                .decode(&stream)
+                .unwrap()
+                .expect("a picture comes at once");
+            assert_eq!(decoded.dimensions(), (320, 240));
+            let strides = decoded.strides();
+            let planes = [
+                (decoded.y(), strides.0, 1),
+                (decoded.u(), strides.1, 2),
+                (decoded.v(), strides.2, 2),
+            ];
+            for (plane, (bytes, stride, scale)) in planes.into_iter().enumerate() {
+                for y in 0..240 / scale {
+                    for x in 0..320 / scale {
+                        let wanted =
+                            picture.get(x * scale / SQUARE, y * scale / SQUARE).unwrap()[plane];
+                        assert_eq!(
+                            bytes[y * stride + x],
+                            wanted,
+                            "frame {frame} plane {plane} ({x}, {y})"
+                        );
+                    }
+                }
+            }
+        }
     }
 
     #[test]
@@ -272,6 +270,35 @@ mod tests {
             .filter(|unit| decoder.decode(unit).is_some())
             .count();
         assert!(decoded > 0 && decoded < 65, "{decoded}");
+    }
+
+    #[test]
+    fn natural_pictures_come_back_nearly() {
+        let (width, height) = (64, 48);
+        let rgb: Vec<u8> = (0..width * height)
+            .flat_map(|i| [(i % width * 4) as u8, (i / width * 5) as u8, 90])
+            .collect();
+        let data = Encoder::new(width, height, 1_000_000)
+            .unwrap()
+            .encode(&rgb)
+            .unwrap();
+        let unit = AccessUnit {
+            data,
+            at: Duration::ZERO,
+            completed: Duration::ZERO,
+            is_key: true,
+            integrity: crate::video::Integrity::Intact,
+            is_decodable: true,
+        };
+        let picture = Decoder::new().unwrap().decode(&unit).unwrap();
+        assert_eq!((picture.width, picture.height), (width, height));
+        let error: u32 = picture
+            .rgb
+            .iter()
+            .zip(&rgb)
+            .map(|(a, b)| u32::from(a.abs_diff(*b)))
+            .sum();
+        assert!((error as usize) < rgb.len() * 6, "{error}");
     }
 
     #[test]
