@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Clients that were not written here fly the emulated drone. Installs them into a temporary folder.
-# Needs Rust, a C++ compiler, python3 with venv, and npm. A client whose installer is missing, or whose package registry cannot be
+# Needs Rust, python3 with venv, and npm. A client whose installer is missing, or whose package registry cannot be
 # reached, is skipped with a line that says so; any other failure fails the run.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
@@ -12,16 +12,18 @@ emulator=""
 cleanup() { [ -z "$emulator" ] || kill "$emulator" 2>/dev/null || true; rm -rf "$work"; }
 trap cleanup EXIT
 
-cargo build --quiet -p tello-sdk --features video --example emulator
-binary="${CARGO_TARGET_DIR:-target}/debug/examples/emulator"
+cargo build --quiet -p explorer
+target="${CARGO_TARGET_DIR:-target}/debug"
 
-# fly NAME PROTOCOL TIMING COMMAND...: a fresh drone, the client with a time limit.
+# fly NAME SDK COMMAND...: a fresh drone with a real one's timing, the client with a time limit.
 passed=0 failed=0 skipped=0
 fly() {
-    local name="$1" protocol="$2" timing="$3"
-    shift 3
-    "$binary" "$address" "$port" 1 "$protocol" ideal "$timing" >"$work/emulator.log" 2>&1 &
+    local name="$1" sdk="$2"
+    shift 2
+    "$target/explorer" emulate --address "$address" --command-port "$port" --sdk "$sdk" 2>"$work/emulator.log" &
     emulator=$!
+    # The drone says so when its sockets are bound.
+    until grep -qs Ctrl-C "$work/emulator.log"; do kill -0 "$emulator"; done
     if timeout 90 "$@" >"$work/client.log" 2>&1; then
         passed=$((passed + 1))
         grep -a "flown" "$work/client.log" | tail -n 1
@@ -62,19 +64,19 @@ if ! python3 -m venv "$work/venv" >/dev/null 2>&1; then
 elif install "the Python clients" 6 "$work/venv/bin/pip" install --disable-pip-version-check \
     djitellopy==2.5.0 easytello==0.0.7 tello-asyncio==2.1.3 tellopy==0.7.0; then
     for client in djitellopy djitellopy_video easytello tello_asyncio; do
-        fly "$client" 2.0 fast "$work/venv/bin/python" "$here/fly_$client.py" "$address" "$port"
+        fly "$client" 2.0 "$work/venv/bin/python" "$here/fly_$client.py" "$address" "$port"
     done
-    fly tellopy binary real "$work/venv/bin/python" "$here/fly_tellopy.py" "$address" "$port"
+    fly tellopy binary "$work/venv/bin/python" "$here/fly_tellopy.py" "$address" "$port"
     # The other way round: our client flies tellopy's own drone (the emulator just runs beside it).
     cargo build --quiet -p tello-sdk --example 04_binary_flight
-    fly tellopy-fake-drone binary real "$work/venv/bin/python" "$here/serve_tellopy_fake.py" \
-        "$(dirname "$binary")/04_binary_flight"
+    fly tellopy-fake-drone binary "$work/venv/bin/python" "$here/serve_tellopy_fake.py" \
+        "$target/examples/04_binary_flight"
 fi
 if ! command -v npm >/dev/null; then
     skipped=$((skipped + 1))
     echo "npm is not available: one client skipped"
 elif install tello-drone 1 npm install --no-fund --no-audit --prefix "$work" tello-drone@3.0.4; then
-    fly tello-drone 2.0 fast node "$here/fly_tello_drone.js" "$address" "$port" "$work/node_modules"
+    fly tello-drone 2.0 node "$here/fly_tello_drone.js" "$address" "$port" "$work/node_modules"
 fi
 echo "clients: $passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

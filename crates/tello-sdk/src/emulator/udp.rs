@@ -11,6 +11,7 @@ use core::net::{Ipv4Addr, SocketAddr};
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use std::net::UdpSocket;
+use std::thread::ScopedJoinHandle;
 use std::time::Instant;
 
 /// Which drones to serve.
@@ -85,22 +86,43 @@ pub fn serve_with_cameras(
     cameras: Cameras<'_>,
     stop: &AtomicBool,
 ) -> Result<Vec<Summary>, ServeError> {
-    let sockets: Vec<DroneSockets> = (0..config.count)
-        .map(|index| DroneSockets::bind(config.address_of(index)?))
-        .collect::<Result<_, _>>()?;
-    let summaries = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0_u8..)
-            .zip(&sockets)
-            .map(|(index, sockets)| {
-                scope.spawn(move || config.run(index, sockets, cameras(index), stop))
-            })
-            .collect();
-        threads
-            .into_iter()
-            .map(|thread| thread.join().unwrap_or_default())
-            .collect()
-    });
-    Ok(summaries)
+    Ok(DroneServer::bind(config)?.run(cameras, stop))
+}
+
+/// Drones whose sockets are bound.
+#[derive(Debug)]
+pub struct DroneServer {
+    config: ServeConfig,
+    sockets: Vec<DroneSockets>,
+}
+
+impl DroneServer {
+    /// Binds the sockets of all drones; from here on clients can send to them.
+    ///
+    /// # Errors
+    /// A socket cannot be bound.
+    pub fn bind(config: &ServeConfig) -> Result<Self, ServeError> {
+        let sockets = (0..config.count)
+            .map(|index| DroneSockets::bind(config.address_of(index)?))
+            .collect::<Result<_, _>>()?;
+        let config = config.clone();
+        Ok(Self { config, sockets })
+    }
+
+    /// Serves until `stop` is set, one thread a drone; returns within about 50 ms then, with what happened to each.
+    pub fn run(&self, cameras: Cameras<'_>, stop: &AtomicBool) -> Vec<Summary> {
+        let config = &self.config;
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = (0_u8..)
+                .zip(&self.sockets)
+                .map(|(index, sockets)| {
+                    scope.spawn(move || config.run(index, sockets, cameras(index), stop))
+                })
+                .collect();
+            let join = |thread: ScopedJoinHandle<'_, Summary>| thread.join().unwrap_or_default();
+            threads.into_iter().map(join).collect()
+        })
+    }
 }
 
 impl ServeConfig {

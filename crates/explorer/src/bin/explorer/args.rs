@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+mod emulate;
 mod slam;
 
+pub(crate) use emulate::Emulate;
 pub(crate) use slam::{AlignChoice, DepthChoice, Evaluate, Slam, join_model_file};
 
 /// Explores unknown rooms with a toy drone, and cleans, reads and plans on sparse SLAM maps.
@@ -56,6 +58,11 @@ pub(crate) enum Command {
     Slam(Slam),
     /// Measure a trajectory against the true one: APE (ATE) and RPE as evo defines them.
     Evaluate(Evaluate),
+    /// Be a Tello, or several, on UDP for any client, until interrupted.
+    ///
+    /// State lines come at 10 Hz, and real H.264 (a moving test card of 960 x 720) while video is on. The
+    /// times are those of a real drone: a take-off takes 4 s.
+    Emulate(Emulate),
 }
 
 /// A map to read, and what its unit is.

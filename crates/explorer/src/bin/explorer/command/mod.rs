@@ -3,6 +3,7 @@
 mod clean;
 mod demo;
 mod evaluate;
+mod emulate;
 mod exits;
 mod map;
 mod obstacles;
@@ -27,5 +28,6 @@ pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Simulate(arguments)) => simulate::run(&arguments, output),
         Some(Command::Slam(arguments)) => slam::run(&arguments, output),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, output),
+        Some(Command::Emulate(arguments)) => emulate::run(&arguments, output),
     }
 }
