@@ -2,8 +2,8 @@
 
 mod clean;
 mod demo;
-mod evaluate;
 mod emulate;
+mod evaluate;
 mod exits;
 mod map;
 mod obstacles;
