@@ -32,7 +32,8 @@ impl<P: Physics> BinaryEmulator<P> {
             return self.message(Message::LogHeader, &header, Duration::ZERO);
         }
         let mut records = [self.imu(), self.gyro(PERIOD / 2), self.gyro(Duration::ZERO)].concat();
-        if self.now.as_millis() / PERIOD.as_millis() % 2 == 0 {
+        let periods = self.now.as_millis() / PERIOD.as_millis();
+        if periods.is_multiple_of(2) {
             records.extend(self.tof());
         }
         self.message(

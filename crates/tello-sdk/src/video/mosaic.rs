@@ -194,7 +194,7 @@ fn slice_data(writer: &mut BitWriter, picture: &Mosaic, last: Option<&Mosaic>) {
 
 /// 7.3.5: Intra_16x16, predicted from the left neighbour, from the upper one in the first column, from 128 at the origin.
 fn macroblock(writer: &mut BitWriter, picture: &Mosaic, index: usize, square: [u8; 3], is_p: bool) {
-    let (luma_mode, chroma_mode, from) = if index % picture.columns > 0 {
+    let (luma_mode, chroma_mode, from) = if !index.is_multiple_of(picture.columns) {
         (1, 1, picture.squares.get(index - 1)) // horizontal
     } else if index > 0 {
         (0, 2, picture.squares.get(index - picture.columns)) // vertical
@@ -221,7 +221,7 @@ fn luma_dc(writer: &mut BitWriter, level: i32) {
     match level {
         0 => writer.bits(0b1, 1),
         -1 | 1 => writer.bits(0b01, 2),
-        _ => writer.bits(0b0001_01, 6),
+        _ => writer.bits(0b00_0101, 6),
     }
     coefficient(writer, level);
 }
@@ -231,7 +231,7 @@ fn chroma_dc(writer: &mut BitWriter, level: i32) {
     match level {
         0 => writer.bits(0b01, 2),
         -1 | 1 => writer.bits(0b1, 1),
-        _ => writer.bits(0b0001_11, 6),
+        _ => writer.bits(0b00_0111, 6),
     }
     coefficient(writer, level);
 }
