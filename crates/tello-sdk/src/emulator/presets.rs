@@ -73,108 +73,81 @@ pub const PRESETS: [(&str, &str); 24] = [
     ),
 ];
 
+/// When faults with a time begin: a drone has taken off by then.
+const BEGIN: Duration = Duration::from_secs(20);
+
 impl Faults {
     /// The faults of a preset of [`PRESETS`]; `seed` draws those of `random`. `None` for another name.
     #[must_use]
     pub fn preset(name: &str, seed: u64) -> Option<Self> {
-        let seconds = Duration::from_secs;
-        let none = Self::default();
-        let lose = |loss| Impairment {
-            loss,
-            ..Impairment::default()
-        };
-        Some(match name {
-            "none" => none,
-            "wifi" => Self::wifi(),
-            "lossy" => Self::lossy(),
-            "random" => Self::random(seed),
-            "lose-commands" => Self {
-                commands: lose(0.2),
-                ..none
-            },
-            "lose-replies" => Self {
-                replies: lose(0.2),
-                ..none
-            },
-            "lose-state" => Self {
-                state: lose(0.4),
-                ..none
-            },
-            "duplicates" => Self::on_every_link(Impairment {
-                duplicate: 0.2,
-                duplicate_delay: Duration::from_millis(80),
-                ..Impairment::default()
-            }),
-            "reorder" => Self::on_every_link(Impairment {
-                delay: 0.2,
-                longest_delay: seconds(2),
-                ..Impairment::default()
-            }),
-            "late-ok" => Self {
-                late: 0.5,
-                late_by: seconds(9),
-                ..none
-            },
-            "unanswered" => Self {
-                unanswered: 0.2,
-                ..none
-            },
-            "silent-emergency" => Self {
-                silent_emergency: true,
-                ..none
-            },
-            "binary-packet" => Self {
-                binary_packet: 0.5,
-                ..none
-            },
-            "other-port" => Self {
-                other_port: 1.0,
-                ..none
-            },
-            "refusals" => Self {
-                refusal: 0.3,
-                ..none
-            },
-            "low-battery" => Self {
-                battery_falls: Some((seconds(20), 4.0)),
-                ..none
-            },
-            "heat" => Self {
-                heat: Some((seconds(20), 98.0)),
-                ..none
-            },
-            "imu-invalid" => Self {
-                imu_invalid_until: seconds(20),
-                ..none
-            },
-            "vision-loss" => Self {
-                vision_loss: Some((seconds(20), seconds(35))),
-                ..none
-            },
-            "odometry-jump" => Self {
-                odometry_jump: 0.05,
-                ..none
-            },
-            "video-loss" => Self {
-                video: lose(0.03),
-                parameter_set_loss: 0.3,
-                ..none
-            },
-            "exact-multiples" => Self {
-                exact_multiples: 0.5,
-                ..none
-            },
-            "wifi-gap" => Self {
-                gap: Some((seconds(20), seconds(28))),
-                ..none
-            },
-            "auto-land" => Self {
-                auto_land_at: Some(seconds(20)),
-                deaf_to_land: seconds(3),
-                ..none
-            },
+        match name {
+            "none" => Some(Self::default()),
+            "wifi" => Some(Self::wifi()),
+            "lossy" => Some(Self::lossy()),
+            "random" => Some(Self::random(seed)),
+            _ => Self::of_link(name)
+                .or_else(|| Self::of_replies(name))
+                .or_else(|| Self::of_drone(name)),
+        }
+    }
+
+    fn of_link(name: &str) -> Option<Self> {
+        let mut faults = Self::default();
+        match name {
+            "lose-commands" => faults.commands.loss = 0.2,
+            "lose-replies" => faults.replies.loss = 0.2,
+            "lose-state" => faults.state.loss = 0.4,
+            "duplicates" => {
+                faults = Self::on_every_link(Impairment {
+                    duplicate: 0.2,
+                    duplicate_delay: Duration::from_millis(80),
+                    ..Impairment::default()
+                });
+            }
+            "reorder" => {
+                faults = Self::on_every_link(Impairment {
+                    delay: 0.2,
+                    longest_delay: Duration::from_secs(2),
+                    ..Impairment::default()
+                });
+            }
+            "video-loss" => (faults.video.loss, faults.parameter_set_loss) = (0.03, 0.3),
+            "exact-multiples" => faults.exact_multiples = 0.5,
+            "wifi-gap" => faults.gap = Some((BEGIN, Duration::from_secs(28))),
             _ => return None,
-        })
+        }
+        Some(faults)
+    }
+
+    fn of_replies(name: &str) -> Option<Self> {
+        let mut faults = Self::default();
+        match name {
+            "late-ok" => (faults.late, faults.late_by) = (0.5, Duration::from_secs(9)),
+            "unanswered" => faults.unanswered = 0.2,
+            "silent-emergency" => faults.silent_emergency = true,
+            "binary-packet" => faults.binary_packet = 0.5,
+            "other-port" => faults.other_port = 1.0,
+            "refusals" => faults.refusal = 0.3,
+            _ => return None,
+        }
+        Some(faults)
+    }
+
+    fn of_drone(name: &str) -> Option<Self> {
+        let mut faults = Self::default();
+        match name {
+            "low-battery" => faults.battery_falls = Some((BEGIN, 4.0)),
+            "heat" => faults.heat = Some((BEGIN, 98.0)),
+            "imu-invalid" => faults.imu_invalid_until = BEGIN,
+            "vision-loss" => faults.vision_loss = Some((BEGIN, Duration::from_secs(35))),
+            "odometry-jump" => faults.odometry_jump = 0.05,
+            "auto-land" => {
+                faults.auto_land_at = Some(BEGIN);
+                faults.deaf_to_land = Duration::from_secs(3);
+            }
+            _ => return None,
+        }
+        Some(faults)
     }
 
     fn on_every_link(link: Impairment) -> Self {
