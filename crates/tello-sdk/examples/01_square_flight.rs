@@ -5,34 +5,16 @@
 
 #![allow(clippy::print_stdout)]
 
-use std::error::Error;
-use std::net::SocketAddr;
-use std::sync::atomic::{AtomicBool, Ordering};
-use tello_sdk::emulator::udp::{ServeConfig, serve};
+mod emulated;
+
+use emulated::{Flown, with_drone};
 use tello_sdk::{Distance, Drone, DroneConfig, Turn};
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1);
-    if arguments.next().as_deref() == Some("--drone") {
-        let address: SocketAddr = arguments
-            .next()
-            .ok_or("--drone needs an address")?
-            .parse()?;
-        return square(DroneConfig::at(address));
-    }
-    let emulator = ServeConfig::default();
-    let address = SocketAddr::from((emulator.address, emulator.command_port));
-    let stop = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        let server = scope.spawn(|| serve(&emulator, &stop));
-        let flown = square(DroneConfig::at(address));
-        stop.store(true, Ordering::Relaxed);
-        server.join().map_err(|_| "the emulator panicked")??;
-        flown
-    })
+fn main() -> Flown {
+    with_drone(square)
 }
 
-fn square(config: DroneConfig) -> Result<(), Box<dyn Error>> {
+fn square(config: DroneConfig) -> Flown {
     let drone = Drone::connect(config)?;
     drone.take_off()?;
     for leg in 1..=4 {

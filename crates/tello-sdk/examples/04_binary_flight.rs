@@ -1,86 +1,56 @@
 //! Takes off, turns and lands in the binary protocol of the maker's app.
 //!
 //! Input: `--drone ADDRESS:PORT` for a real drone (192.168.10.1:8889) or another program's; without it an emulated drone on
-//! 127.0.0.3 is started in this process. Output: how each command ended, then the last battery.
+//! 127.0.0.3 is started in this process. Output: how far it turned, then the battery's charge.
 
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
-use std::net::{SocketAddr, UdpSocket};
+use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use tello_sdk::binary::{BinaryCommand, BinaryConfig, BinaryEvent, BinaryOutput, BinarySession};
-use tello_sdk::emulator::udp::{ServeConfig, serve};
-use tello_sdk::{Stick, Sticks};
+use tello_sdk::emulator::udp::{DroneServer, ServeConfig};
+use tello_sdk::{BinaryDrone, BinaryDroneConfig, Stick, Sticks};
 
 fn main() -> Result<(), Box<dyn Error>> {
     if let Some(address) = std::env::args().skip_while(|word| word != "--drone").nth(1) {
         return fly(address.parse()?);
     }
-    let address = [127, 0, 0, 3].into();
-    let emulator = ServeConfig {
-        address,
+    let config = ServeConfig {
+        address: [127, 0, 0, 3].into(),
         binary: true,
         ..ServeConfig::default()
     };
-    let stop = AtomicBool::new(false);
+    let (server, stop) = (DroneServer::bind(&config)?, AtomicBool::new(false));
     std::thread::scope(|scope| {
-        scope.spawn(|| serve(&emulator, &stop));
-        let flown = fly(SocketAddr::from((address, emulator.command_port)));
+        scope.spawn(|| server.run(&|_| None, &stop));
+        let flown = config.address_of(0).map_err(Into::into).and_then(fly);
         stop.store(true, Ordering::Relaxed);
         flown
     })
 }
 
-fn fly(drone: SocketAddr) -> Result<(), Box<dyn Error>> {
-    let socket = UdpSocket::bind("0.0.0.0:0")?;
-    let mut session = BinarySession::new(BinaryConfig::default());
-    let (start, mut buffer, mut took_off) = (Instant::now(), [0; 2048], None);
-    loop {
-        let now = start.elapsed();
-        let wait = match session.poll_output() {
-            BinaryOutput::WaitUntil(at) => at.saturating_sub(now),
-            BinaryOutput::Send(bytes) => {
-                socket.send_to(&bytes, drone)?;
-                continue;
-            }
-            BinaryOutput::Event(BinaryEvent::Connected) if took_off.is_none() => {
-                session.command(now, BinaryCommand::TakeOff);
-                took_off = Some(now);
-                continue;
-            }
-            BinaryOutput::Event(BinaryEvent::Finished {
-                command, ending, ..
-            }) => {
-                println!("{command:?}: {ending:?}");
-                if command == BinaryCommand::Land {
-                    break;
-                }
-                continue;
-            }
-            BinaryOutput::Event(_) => continue,
-        };
-        socket.set_read_timeout(Some(wait.max(Duration::from_millis(1))))?;
-        match socket.recv_from(&mut buffer) {
-            Ok((length, _)) => session.handle_datagram(start.elapsed(), &buffer[..length]),
-            Err(_) => session.handle_timeout(start.elapsed()),
-        }
-        match took_off.map(|at| now.saturating_sub(at).as_secs()) {
-            Some(4 | 5) => session.set_sticks(
-                now,
-                Sticks {
-                    yaw: Stick::MAX,
-                    ..Sticks::CENTER
-                },
-            ),
-            Some(6) => {
-                session.command(now, BinaryCommand::Land);
-                took_off = Some(Duration::MAX);
-            }
-            _ => {}
+fn fly(address: SocketAddr) -> Result<(), Box<dyn Error>> {
+    let drone = BinaryDrone::connect(BinaryDroneConfig::at(address))?;
+    drone.take_off()?;
+    let start = Instant::now();
+    let turn = Sticks {
+        yaw: Stick::MAX,
+        ..Sticks::CENTER
+    };
+    // Up for four seconds, then clockwise for two; each event comes with new telemetry.
+    while start.elapsed() < Duration::from_secs(6) {
+        let _ = drone.next_event(Duration::from_millis(100));
+        if start.elapsed() > Duration::from_secs(4) {
+            drone.set_sticks(turn);
         }
     }
-    let battery = session.telemetry().battery;
+    let (telemetry, _) = drone.telemetry()?;
+    if let Some(attitude) = telemetry.attitude {
+        println!("yaw {:.0} degrees", attitude.value.yaw_deg);
+    }
+    drone.land()?;
+    let battery = telemetry.battery;
     println!(
         "battery {:?}",
         battery.map(|reading| reading.value.percent())

@@ -24,10 +24,12 @@ pub use camera::{CalibrationError, CalibrationSource, Intrinsics};
 pub use command::{
     Arc, Class, Command, Credentials, Flip, Pad, Query, ReplyShape, SdkVersion, Waypoint,
 };
+#[cfg(feature = "tokio")]
+pub use driver::AsyncDrone;
 #[cfg(feature = "std")]
 pub use driver::{
-    ConnectError, DriveError, Drone, DroneConfig, Found, StateHub, VideoConfig, VideoStream,
-    discover,
+    BinaryDrone, BinaryDroneConfig, ConnectError, DriveError, Drone, DroneConfig, Found, StateHub,
+    VideoConfig, VideoHub, VideoStream, discover,
 };
 pub use reply::{Refusal, Reply, ReplyKind};
 pub use safety::{Alarm, Finding, PreflightConfig, SafetyConfig, preflight};

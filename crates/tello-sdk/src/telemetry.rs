@@ -24,7 +24,7 @@ pub enum Source {
 pub struct Reading<T> {
     /// The value.
     pub value: T,
-    /// Time of receipt since the start of the session.
+    /// Time since the start of the session: of receipt; for a log record when the drone made it, by its converted counter.
     pub at: Duration,
     /// Where it comes from.
     pub source: Source,

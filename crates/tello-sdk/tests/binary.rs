@@ -95,7 +95,10 @@ fn a_flight_with_sticks_and_log_records() {
     let mut flight = Flight::new(0);
     flight.run(seconds(1));
     assert_eq!(flight.events[0], BinaryEvent::Connected);
-    let take_off = flight.session.command(flight.now, BinaryCommand::TakeOff);
+    let take_off = flight
+        .session
+        .command(flight.now, BinaryCommand::TakeOff)
+        .unwrap();
     flight.run(seconds(5));
     assert_eq!(flight.ending(take_off), Some(Ending::Acknowledged));
     assert!(flight.session.telemetry().flying.unwrap().value);
@@ -115,7 +118,10 @@ fn a_flight_with_sticks_and_log_records() {
     assert!((100.0..150.0).contains(&yaw), "{yaw}");
     assert!(telemetry.position_m.unwrap().valid && telemetry.velocity.unwrap().valid);
     assert!(telemetry.battery.unwrap().value.percent() > 80);
-    let land = flight.session.command(flight.now, BinaryCommand::Land);
+    let land = flight
+        .session
+        .command(flight.now, BinaryCommand::Land)
+        .unwrap();
     flight.run(seconds(5));
     assert_eq!(flight.ending(land), Some(Ending::Confirmed));
     assert!(!flight.drone.is_flying());
@@ -127,11 +133,20 @@ fn with_loss_no_motion_is_sent_twice_and_it_lands() {
     for lose in 2..12 {
         let mut flight = Flight::new(lose);
         flight.run(seconds(4));
-        flight.session.command(flight.now, BinaryCommand::TakeOff);
+        flight
+            .session
+            .command(flight.now, BinaryCommand::TakeOff)
+            .unwrap();
         flight.run(seconds(6));
-        flight.session.command(flight.now, BinaryCommand::Flip(0));
+        flight
+            .session
+            .command(flight.now, BinaryCommand::Flip(0))
+            .unwrap();
         flight.run(seconds(3));
-        let land = flight.session.command(flight.now, BinaryCommand::Land);
+        let land = flight
+            .session
+            .command(flight.now, BinaryCommand::Land)
+            .unwrap();
         flight.run(seconds(60));
         assert_eq!(
             flight.ending(land),
@@ -147,7 +162,10 @@ fn with_loss_no_motion_is_sent_twice_and_it_lands() {
 #[test]
 fn a_dead_link_ends_the_landing_in_time() {
     let mut flight = Flight::new(1);
-    let land = flight.session.command(flight.now, BinaryCommand::Land);
+    let land = flight
+        .session
+        .command(flight.now, BinaryCommand::Land)
+        .unwrap();
     flight.run(seconds(61));
     assert_eq!(flight.ending(land), Some(Ending::Unknown));
     assert_eq!(

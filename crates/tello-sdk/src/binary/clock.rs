@@ -47,7 +47,7 @@ impl TickClock {
             self.unwrapped
                 .saturating_sub(u64::from(forward.wrapping_neg()))
         };
-        let made = ticks as f64 * NANOS_PER_TICK * 1e-9;
+        let made = seconds(ticks);
         let difference = arrival.as_secs_f64() - made;
         let elapsed = arrival.saturating_sub(self.last_arrival).as_secs_f64();
         self.last_arrival = self.last_arrival.max(arrival);
@@ -55,10 +55,26 @@ impl TickClock {
             .offset
             .map_or(difference, |old| difference.min(old + LEAK * elapsed));
         self.offset = Some(offset);
-        Duration::try_from_secs_f64(made + offset)
-            .ok()
-            .map(|time| time.min(arrival))
+        at(made + offset, arrival)
     }
+
+    /// When a record of another kind was made, by the offset known so far; the clock learns nothing from it.
+    #[must_use]
+    pub fn convert(&self, tick: u32, arrival: Duration) -> Option<Duration> {
+        let since = tick.wrapping_sub(self.last?) as i32;
+        let ticks = self.unwrapped.saturating_add_signed(i64::from(since));
+        at(seconds(ticks) + self.offset?, arrival)
+    }
+}
+
+fn seconds(ticks: u64) -> f64 {
+    ticks as f64 * NANOS_PER_TICK * 1e-9
+}
+
+/// Never later than the arrival.
+fn at(seconds: f64, arrival: Duration) -> Option<Duration> {
+    let time = Duration::try_from_secs_f64(seconds).ok()?;
+    Some(time.min(arrival))
 }
 
 #[cfg(test)]
@@ -86,6 +102,20 @@ mod tests {
             }
         }
         assert!(worst < 0.002, "{worst}");
+    }
+
+    #[test]
+    fn a_late_record_of_another_kind_keeps_its_time() {
+        let mut clock = TickClock::new();
+        assert_eq!(clock.convert(0, Duration::ZERO), None);
+        for i in 0..50_u32 {
+            let made = f64::from(i) * 0.1;
+            let _ = clock.observe(tick_at(made), Duration::from_secs_f64(made + 0.03));
+        }
+        let late = clock
+            .convert(tick_at(4.5), Duration::from_secs_f64(5.4))
+            .unwrap();
+        assert!((late.as_secs_f64() - 4.53).abs() < 1e-3, "{late:?}");
     }
 
     #[test]

@@ -4,19 +4,21 @@
 //! acknowledgements by message and sequence number. No command is sent again except `land`, which is repeated until the
 //! flight data say that the drone is on the ground. Drain [`BinarySession::poll_output`] after every call.
 
+use super::clock::TickClock;
 use super::flight_data::FlightData;
 use super::frame::Frame;
-use super::log::LogRecords;
+use super::log::{LogRecord, LogRecords, RecordKind};
 use super::message::Message;
 use super::sticks::encode_sticks;
+use crate::safety::{Alarm, Guard, SafetyConfig, outside};
 use crate::session::Sticks;
-use crate::telemetry::Telemetry;
+use crate::telemetry::{Source, Telemetry};
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::time::Duration;
 
 /// Settings of a [`BinarySession`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BinaryConfig {
     /// Where the drone shall send video. Default 6038.
     pub video_port: u16,
@@ -34,6 +36,8 @@ pub struct BinaryConfig {
     pub video_repeat: Duration,
     /// Silence after which the connection is made anew. Default 2 s.
     pub link_timeout: Duration,
+    /// What makes the session land by itself. The drone tells no temperature in this protocol, only that it is hot.
+    pub safety: SafetyConfig,
 }
 
 impl Default for BinaryConfig {
@@ -48,6 +52,7 @@ impl Default for BinaryConfig {
             land_give_up: ms(60_000),
             video_repeat: ms(2000),
             link_timeout: ms(2000),
+            safety: SafetyConfig::default(),
         }
     }
 }
@@ -119,6 +124,8 @@ pub enum BinaryEvent {
     Telemetry,
     /// The sticks were centred by the watchdog.
     SticksCentered,
+    /// The session lands by itself.
+    Alarm(Alarm),
 }
 
 /// What the caller has to do.
@@ -142,7 +149,8 @@ struct Pending {
 
 #[derive(Debug, Clone, Copy)]
 struct Landing {
-    id: CommandId,
+    /// `None` for the session's own landing.
+    id: Option<CommandId>,
     since: Duration,
     next: Duration,
 }
@@ -164,12 +172,21 @@ pub struct BinarySession {
     sequence: u16,
     next_id: u64,
     telemetry: Telemetry,
+    clock: TickClock,
+    first_attitude: Option<Duration>,
+    guard: Guard,
+    lift_off_until: Option<Duration>,
     rejected: u64,
     outputs: VecDeque<BinaryOutput>,
 }
 
 /// Later times are taken as this one (a hundred years), so that sums of times cannot overflow.
 const LATEST: Duration = Duration::from_secs(100 * 365 * 86_400);
+
+/// A take-off may take this long to show in the flight data.
+const LIFT_OFF: Duration = Duration::from_millis(1500);
+/// The odometry's velocity is preferred to that of the flight data while it is younger than this: it is up to 0.9 s late.
+const LOG_LASTS: Duration = Duration::from_millis(1500);
 
 /// Commands that wait for an acknowledgement at most; the oldest is given up beyond.
 const PENDING: usize = 64;
@@ -193,32 +210,87 @@ impl BinarySession {
             sequence: 0,
             next_id: 0,
             telemetry: Telemetry::default(),
+            clock: TickClock::new(),
+            first_attitude: None,
+            guard: Guard::default(),
+            lift_off_until: None,
             rejected: 0,
             outputs: VecDeque::new(),
         }
     }
 
     /// Sends a command once (`land`: until confirmed); its end comes as an event.
-    pub fn command(&mut self, now: Duration, command: BinaryCommand) -> CommandId {
+    ///
+    /// # Errors
+    /// The session has landed on an alarm: only `land` is accepted until it is acknowledged.
+    pub fn command(&mut self, now: Duration, command: BinaryCommand) -> Result<CommandId, Alarm> {
         self.now = self.now.max(now.min(LATEST));
+        if let (Some(alarm), true) = (self.guard.latched(), command != BinaryCommand::Land) {
+            return Err(alarm);
+        }
         self.next_id += 1;
         let id = CommandId(self.next_id);
         if command == BinaryCommand::Land {
-            if let Some(old) = self.landing.take() {
-                self.finish(old.id, command, Ending::Unknown);
-            }
-            self.sticks = Sticks::CENTER;
-            self.sticks_set = None;
-            self.landing = Some(Landing {
-                id,
-                since: self.now,
-                next: self.now,
-            });
+            self.begin_landing(Some(id));
         } else {
             self.start(id, command);
         }
         self.advance();
-        id
+        Ok(id)
+    }
+
+    fn begin_landing(&mut self, id: Option<CommandId>) {
+        if let Some(old) = self.landing.take() {
+            self.end_landing(old.id, Ending::Unknown);
+        }
+        self.sticks = Sticks::CENTER;
+        self.sticks_set = None;
+        self.landing = Some(Landing {
+            id,
+            since: self.now,
+            next: self.now,
+        });
+    }
+
+    fn end_landing(&mut self, id: Option<CommandId>, ending: Ending) {
+        if let Some(id) = id {
+            self.finish(id, BinaryCommand::Land, ending);
+        }
+    }
+
+    /// Reports a position from outside for the fence, metres.
+    pub fn report_position(&mut self, now: Duration, position: [f64; 3]) {
+        self.now = self.now.max(now.min(LATEST));
+        if let Some(fence) = &self.config.safety.fence {
+            let distance_cm = outside(fence, position);
+            if distance_cm > 0 && self.guard.is_flying() {
+                self.raise(Alarm::Fence { distance_cm });
+            }
+        }
+        self.advance();
+    }
+
+    /// Accepts commands again after an alarm.
+    pub fn acknowledge_alarm(&mut self) {
+        self.guard.acknowledge();
+    }
+
+    /// The latched alarm.
+    #[must_use]
+    pub fn alarm(&self) -> Option<Alarm> {
+        self.guard.latched()
+    }
+
+    /// Whether the drone is taken to be in the air: a take-off was sent or it says so, and no standstill was told since.
+    #[must_use]
+    pub fn may_be_flying(&self) -> bool {
+        self.guard.is_flying()
+    }
+
+    /// When the first attitude came from the log.
+    #[must_use]
+    pub fn first_attitude(&self) -> Option<Duration> {
+        self.first_attitude
     }
 
     /// Sets the sticks; to be repeated within the watchdog's time.
@@ -253,6 +325,7 @@ impl BinarySession {
             self.heard = self.now;
             if !self.connected {
                 self.connected = true;
+                self.clock = TickClock::new();
                 self.next_sticks = self.now;
                 self.outputs
                     .push_back(BinaryOutput::Event(BinaryEvent::Connected));
@@ -295,7 +368,7 @@ impl BinarySession {
         let is = |message: Message| frame.message == message as u16;
         if is(Message::FlightData) {
             if let Some(data) = FlightData::parse(frame.payload) {
-                self.take(&data.telemetry(self.now));
+                self.take_flight_data(&data);
             }
         } else if is(Message::LogHeader) {
             // Without this acknowledgement no log data come.
@@ -304,7 +377,7 @@ impl BinarySession {
             self.send(Message::LogHeader, 0x50, &payload);
         } else if is(Message::LogData) {
             for record in LogRecords::new(frame.payload) {
-                self.take(&record.telemetry(self.now));
+                self.take_record(&record);
             }
         } else if let Some(index) = self.pending.iter().position(|p| {
             p.sequence == frame.sequence && p.command.frame().0 as u16 == frame.message
@@ -312,6 +385,41 @@ impl BinarySession {
             let done = self.pending.swap_remove(index);
             self.finish(done.id, done.command, Ending::Acknowledged);
         }
+    }
+
+    fn take_flight_data(&mut self, data: &FlightData) {
+        let mut sample = data.telemetry(self.now);
+        let logged = self.telemetry.velocity.is_some_and(|velocity| {
+            velocity.source == Source::Log && velocity.valid && velocity.age(self.now) < LOG_LASTS
+        });
+        if logged {
+            // The odometry's velocity is finer; the two would alternate.
+            sample.velocity = None;
+        }
+        self.take(&sample);
+        let lifting = self.lift_off_until.is_some_and(|until| self.now < until);
+        if data.is_flying() || !lifting {
+            self.guard.motors(self.now, Some(data.is_flying()));
+        }
+        if data.is_hot && self.guard.is_flying() {
+            self.raise(Alarm::Hot);
+        }
+    }
+
+    /// Each value carries the time at which the drone made it, by the converted counter. The attitude's records set the
+    /// clock: they come soonest.
+    fn take_record(&mut self, record: &LogRecord) {
+        let made = if record.kind == RecordKind::Imu {
+            self.clock.observe(record.tick, self.now)
+        } else {
+            self.clock.convert(record.tick, self.now)
+        };
+        let Some(at) = made else { return };
+        let sample = record.telemetry(at);
+        if sample.attitude.is_some() {
+            self.first_attitude = self.first_attitude.or(Some(self.now));
+        }
+        self.take(&sample);
     }
 
     fn take(&mut self, sample: &Telemetry) {
@@ -324,6 +432,10 @@ impl BinarySession {
         if self.pending.len() >= PENDING {
             let oldest = self.pending.swap_remove(0);
             self.finish(oldest.id, oldest.command, Ending::Unknown);
+        }
+        if matches!(command, BinaryCommand::TakeOff | BinaryCommand::ThrowAndGo) {
+            self.lift_off_until = Some(self.now + LIFT_OFF);
+            self.guard.motors(self.now, Some(true));
         }
         let (message, kind, payload) = command.frame();
         let sequence = self.send(message, kind, &payload);
@@ -358,7 +470,28 @@ impl BinarySession {
         self.outputs.push_back(BinaryOutput::Event(event));
     }
 
+    fn raise(&mut self, alarm: Alarm) {
+        if self.guard.raise(alarm) {
+            self.land_on(alarm);
+        }
+    }
+
+    fn land_on(&mut self, alarm: Alarm) {
+        self.outputs
+            .push_back(BinaryOutput::Event(BinaryEvent::Alarm(alarm)));
+        if self.landing.is_none() {
+            self.begin_landing(None);
+        }
+    }
+
     fn advance(&mut self) {
+        let safety = self.config.safety;
+        if let Some(alarm) = self
+            .guard
+            .check(self.now, &safety, &self.telemetry, self.heard)
+        {
+            self.land_on(alarm);
+        }
         self.step_link();
         self.step_pending();
         self.step_landing();
@@ -399,14 +532,16 @@ impl BinarySession {
             .telemetry
             .flying
             .is_some_and(|f| !f.value && f.at > landing.since);
-        if landed || self.now.saturating_sub(landing.since) >= self.config.land_give_up {
+        let lifting = self.lift_off_until.is_some_and(|until| self.now < until);
+        // A landing on an alarm is repeated until the drone stands, whatever the time.
+        let alarmed = self.guard.latched().is_some();
+        let late = self.now.saturating_sub(landing.since) >= self.config.land_give_up;
+        if landed && !lifting {
             self.landing = None;
-            let ending = if landed {
-                Ending::Confirmed
-            } else {
-                Ending::Unknown
-            };
-            return self.finish(landing.id, BinaryCommand::Land, ending);
+            return self.end_landing(landing.id, Ending::Confirmed);
+        } else if late && !alarmed {
+            self.landing = None;
+            return self.end_landing(landing.id, Ending::Unknown);
         }
         if landing.next <= self.now {
             let (message, kind, payload) = BinaryCommand::Land.frame();
@@ -448,11 +583,10 @@ impl BinarySession {
         };
         let watchdog = self.sticks_set.map(|at| at + self.config.stick_watchdog);
         let pending = self.pending.iter().map(|p| p.deadline).min();
-        let landing = self
-            .landing
-            .map(|l| l.next.min(l.since + self.config.land_give_up));
+        let landing = self.landing.map(|landing| landing.next);
         let video = self.next_video.filter(|_| self.connected);
-        let all = [Some(link), watchdog, pending, landing, video];
+        let guard = self.guard.deadline(&self.config.safety, self.heard);
+        let all = [Some(link), watchdog, pending, landing, video, guard];
         all.into_iter().flatten().min().unwrap_or(Duration::MAX)
     }
 }

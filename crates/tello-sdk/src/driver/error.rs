@@ -1,8 +1,9 @@
 //! What can go wrong while connecting and while flying.
 
-use crate::reply::Refusal;
+use crate::reply::{Refusal, Reply};
 use crate::safety::Finding;
-use crate::session::{ConfigError, RequestError, Verdict};
+use crate::session::{ConfigError, Outcome, RequestError, Verdict};
+use crate::units::Battery;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::net::SocketAddr;
@@ -90,6 +91,32 @@ pub enum DriveError {
     /// The connection's thread has ended.
     #[error("the connection is closed")]
     Closed,
+}
+
+/// A positive end as a reply, anything else as an error.
+pub(super) fn settle(outcome: Outcome) -> Result<Reply, DriveError> {
+    match outcome {
+        Outcome::Answered(reply) => Ok(reply),
+        Outcome::Confirmed
+        | Outcome::Unknown {
+            verdict: Verdict::Done,
+            ..
+        } => Ok(Reply::parse(b"")),
+        Outcome::Refused { refusal, reply } => Err(DriveError::Refused {
+            refusal,
+            raw: reply.raw,
+        }),
+        Outcome::Unknown { verdict, attempts } => Err(DriveError::Unknown { verdict, attempts }),
+        Outcome::NotSent => Err(DriveError::NotSent),
+    }
+}
+
+/// The answer to the question for the battery.
+pub(super) fn percentage(reply: Reply) -> Result<Battery, DriveError> {
+    let percent = reply
+        .number()
+        .and_then(|n| Battery::from_percent(n as i64).ok());
+    percent.ok_or(DriveError::NotAValue { raw: reply.raw })
 }
 
 fn list(findings: &[Finding]) -> String {

@@ -1,14 +1,16 @@
 //! The video socket: a thread that assembles access units and keeps them for a slow or an impatient reader.
 
 use super::error::ConnectError;
+use super::hub::VideoHub;
 use crate::video::{AccessUnit, Assembler, AssemblerConfig, VideoCounters};
 use alloc::collections::VecDeque;
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 use core::net::{IpAddr, SocketAddr};
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use std::net::UdpSocket;
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread::{Builder, JoinHandle};
 use std::time::Instant;
 
@@ -77,12 +79,37 @@ impl VideoStream {
         let fail = |source| ConnectError::Bind { address, source };
         let socket = UdpSocket::bind(address).map_err(fail)?;
         let local = socket.local_addr().map_err(fail)?;
+        Self::start(config, Source::Socket(socket), local)
+    }
+
+    /// Takes this drone's part of a video port that several drones share ([`VideoConfig::bind`] and
+    /// [`VideoConfig::drone`] are not used then). Open it before the drone's stream begins.
+    ///
+    /// # Errors
+    /// No thread can be started.
+    pub fn open_through(
+        hub: &VideoHub,
+        drone: IpAddr,
+        config: VideoConfig,
+    ) -> Result<Self, ConnectError> {
+        let config = VideoConfig {
+            drone: None,
+            ..config
+        };
+        Self::start(
+            config,
+            Source::Hub(hub.register(drone)),
+            hub.local_address(),
+        )
+    }
+
+    fn start(config: VideoConfig, source: Source, local: SocketAddr) -> Result<Self, ConnectError> {
         let (shared, start) = (Arc::new(Shared::default()), Instant::now());
         let receiver = Receiver {
             assembler: Assembler::new(config.assembler),
             shared: Arc::clone(&shared),
             config,
-            socket,
+            source,
             start,
         };
         let thread = Builder::new()
@@ -155,11 +182,35 @@ impl Drop for VideoStream {
     }
 }
 
+/// Where datagrams come from.
+enum Source {
+    Socket(UdpSocket),
+    Hub(mpsc::Receiver<Vec<u8>>),
+}
+
+impl Source {
+    /// The next datagram within `wait`: its sender, if known, and its length in the buffer.
+    fn receive(&self, buffer: &mut [u8; 2048], wait: Duration) -> Option<(Option<IpAddr>, usize)> {
+        match self {
+            Self::Socket(socket) => {
+                let _ = socket.set_read_timeout(Some(wait.max(Duration::from_millis(1))));
+                let (length, from) = socket.recv_from(buffer).ok()?;
+                Some((Some(from.ip()), length))
+            }
+            Self::Hub(inbox) => {
+                let bytes = inbox.recv_timeout(wait).ok()?;
+                buffer.get_mut(..bytes.len())?.copy_from_slice(&bytes);
+                Some((None, bytes.len()))
+            }
+        }
+    }
+}
+
 struct Receiver {
     assembler: Assembler,
     shared: Arc<Shared>,
     config: VideoConfig,
-    socket: UdpSocket,
+    source: Source,
     start: Instant,
 }
 
@@ -172,14 +223,11 @@ impl Receiver {
                 .deadline()
                 .map(|at| at.saturating_sub(self.start.elapsed()));
             let wait = idle.unwrap_or(Duration::from_millis(100));
-            let _ = self
-                .socket
-                .set_read_timeout(Some(wait.max(Duration::from_millis(1))));
-            let received = self.socket.recv_from(&mut buffer);
+            let received = self.source.receive(&mut buffer, wait);
             let now = self.start.elapsed();
             let mut units = [None, None, self.assembler.handle_timeout(now)];
-            if let Ok((length, from)) = received
-                && self.config.drone.is_none_or(|ip| ip == from.ip())
+            if let Some((from, length)) = received
+                && (self.config.drone.is_none() || self.config.drone == from)
             {
                 let bytes = buffer.get(..length).unwrap_or_default();
                 let [before, own] = self.assembler.push(now, bytes);

@@ -23,6 +23,9 @@ pub enum Alarm {
         /// Limit, degrees Celsius.
         limit: i16,
     },
+    /// The drone says that it is too hot (binary protocol: without a number).
+    #[error("the drone says that it is too hot")]
+    Hot,
     /// The drone is too high.
     #[error("height {centimeters} cm, limit {limit} cm")]
     Height {
