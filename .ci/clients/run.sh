@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Clients that were not written here fly the emulated drone. Installs them into a temporary folder.
-# Needs Rust, python3 with venv, and npm. A client whose installer is missing, or whose package registry cannot be
+# Needs Rust, a C++ compiler, python3 with venv, and npm. A client whose installer is missing, or whose package registry cannot be
 # reached, is skipped with a line that says so; any other failure fails the run.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
@@ -26,7 +26,7 @@ fly() {
     until grep -qs Ctrl-C "$work/emulator.log"; do kill -0 "$emulator"; done
     if timeout 90 "$@" >"$work/client.log" 2>&1; then
         passed=$((passed + 1))
-        grep -a "flown" "$work/client.log" | tail -n 1
+        grep -aE "flown|age median" "$work/client.log" | tail -n 1
     else
         failed=$((failed + 1))
         echo "$name: FAILED"
@@ -58,14 +58,19 @@ install() {
     return 1
 }
 
+# How old is the newest decoded picture: ours here, djitellopy's on the same stream below.
+cargo build --quiet -p tello-sdk --features video --example 09_video_age
+fly tello-sdk-age 2.0 "$target/examples/09_video_age" "$address:$port"
+
 if ! python3 -m venv "$work/venv" >/dev/null 2>&1; then
-    skipped=$((skipped + 6))
-    echo "python3 venv is not available: six checks skipped"
-elif install "the Python clients" 6 "$work/venv/bin/pip" install --disable-pip-version-check \
+    skipped=$((skipped + 7))
+    echo "python3 venv is not available: seven checks skipped"
+elif install "the Python clients" 7 "$work/venv/bin/pip" install --disable-pip-version-check \
     djitellopy==2.5.0 easytello==0.0.7 tello-asyncio==2.1.3 tellopy==0.7.0; then
     for client in djitellopy djitellopy_video easytello tello_asyncio; do
         fly "$client" 2.0 "$work/venv/bin/python" "$here/fly_$client.py" "$address" "$port"
     done
+    fly djitellopy-age 2.0 "$work/venv/bin/python" "$here/age_djitellopy.py" "$address" "$port"
     fly tellopy binary "$work/venv/bin/python" "$here/fly_tellopy.py" "$address" "$port"
     # The other way round: our client flies tellopy's own drone (the emulator just runs beside it).
     cargo build --quiet -p tello-sdk --example 04_binary_flight

@@ -4,6 +4,7 @@ mod answer;
 mod camera;
 mod config_error;
 mod drone;
+mod physics;
 mod random;
 mod simulator;
 mod slam;

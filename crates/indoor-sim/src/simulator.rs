@@ -254,6 +254,27 @@ impl Simulator {
         self.drone.is_busy()
     }
 
+    /// How long nothing was sent to the drone.
+    pub(crate) fn silence(&self) -> Duration {
+        self.now.saturating_sub(self.last_heard)
+    }
+
+    /// All the time given so far, also what is not yet a whole step.
+    pub(crate) fn time(&self) -> Duration {
+        self.now + self.remainder
+    }
+
+    /// Where the drone stood at power-on: body to world.
+    pub(crate) fn start_pose(&self) -> Isometry3<f64> {
+        let start = self.world.start();
+        let [x, y] = [start.position[0], start.position[1]];
+        let heading = nalgebra::Vector3::z() * start.yaw_degrees.to_radians();
+        Isometry3::new(
+            nalgebra::Vector3::new(x, y, self.drone.config.radius),
+            heading,
+        )
+    }
+
     fn reply(&mut self, text: &str) {
         self.replies.push_back(Reply::parse(text.as_bytes()));
     }

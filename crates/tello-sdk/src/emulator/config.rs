@@ -1,8 +1,10 @@
 //! What kind of drone is emulated, and how fast it is.
 
 use super::faults::Faults;
+use super::pads::FloorPad;
 use crate::command::SdkVersion;
 use alloc::string::String;
+use alloc::vec::Vec;
 use core::time::Duration;
 
 /// What the drone does with a command while another one runs.
@@ -100,6 +102,8 @@ pub struct EmulatorConfig {
     pub state_period: Duration,
     /// Lands by itself after this long without a command. Default 15 s.
     pub auto_land: Duration,
+    /// Mission pads on the floor. Default none.
+    pub pads: Vec<FloorPad>,
     /// What happens to a command while another runs.
     pub when_busy: WhenBusy,
     /// How fast it is.
@@ -123,6 +127,7 @@ impl Default for EmulatorConfig {
             video_port: 11_111,
             state_period: Duration::from_millis(100),
             auto_land: Duration::from_secs(15),
+            pads: Vec::new(),
             when_busy: WhenBusy::Drop,
             timing: Timing::default(),
             faults: Faults::default(),

@@ -17,6 +17,7 @@ mod faults;
 mod kinematic;
 mod link;
 mod obey;
+mod pads;
 mod physics;
 mod presets;
 pub(crate) mod random;
@@ -29,6 +30,7 @@ pub use config::{EmulatorConfig, Timing, WhenBusy};
 pub use faults::{Faults, Impairment};
 #[cfg(feature = "std")]
 pub use kinematic::Kinematic;
+pub use pads::FloorPad;
 pub use physics::{Action, Physics, Progress, Truth};
 pub use presets::PRESETS;
 
@@ -36,7 +38,8 @@ pub(crate) use body::Body;
 pub(crate) use camera::{Camera, loses_parameter_set, pad_to_multiple};
 pub(crate) use link::{Departure, Lane, Link};
 
-use crate::command::Command;
+use crate::command::{Command, PadDirection};
+use crate::reply::Refusal;
 use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -125,11 +128,13 @@ pub struct Emulator<P> {
     took_off: Duration,
     speed: f64,
     height_offset: f64,
+    looks_for_pads: bool,
+    pad_direction: PadDirection,
     log: Vec<Received>,
     arrived: usize,
     answering: Option<usize>,
     answers_doubled: bool,
-    refused_at: Option<(crate::reply::Refusal, Duration)>,
+    refused_at: Option<(Refusal, Duration)>,
 }
 
 /// The command that is being carried out.
@@ -137,6 +142,8 @@ struct Running {
     command: Command,
     reply_to: SocketAddr,
     index: Option<usize>,
+    /// The turn of a jump.
+    is_second_part: bool,
 }
 
 /// Bound of [`Emulator::log`].
@@ -159,6 +166,8 @@ impl<P: Physics> Emulator<P> {
             took_off: Duration::ZERO,
             speed: config.timing.speed,
             height_offset: 0.0,
+            looks_for_pads: false,
+            pad_direction: PadDirection::Down,
             log: Vec::new(),
             arrived: 0,
             answering: None,
@@ -276,13 +285,25 @@ impl<P: Physics> Emulator<P> {
     }
 
     fn end_of_action(&mut self) {
-        let Progress::Ended(result) = self.body.physics.progress() else {
+        let Progress::Ended(mut result) = self.body.physics.progress() else {
             return;
         };
         self.body.lands_itself = false;
-        let Some(done) = self.running.take() else {
+        let Some(mut done) = self.running.take() else {
             return;
         };
+        if let (Command::Jump { .. }, Ok(()), false) = (&done.command, result, done.is_second_part)
+        {
+            let begun = self.second_part(&done.command).map(|action| {
+                done.is_second_part = true;
+                self.body.physics.begin(self.now, action)
+            });
+            if begun == Some(Ok(())) {
+                self.running = Some(done);
+                return;
+            }
+            result = Err(Refusal::NotValidMarker);
+        }
         if done.command == Command::TakeOff {
             self.took_off = self.now;
         }

@@ -79,6 +79,9 @@ impl<P: Physics> Emulator<P> {
             Command::EnterSdk => self.client = Some(from),
             Command::SetSpeed(speed) => self.speed = speed.meters_per_s(),
             Command::StreamOn => self.camera.start(self.now),
+            Command::PadsOn => self.looks_for_pads = true,
+            Command::PadsOff => self.looks_for_pads = false,
+            Command::PadDirection(direction) => self.pad_direction = *direction,
             Command::StreamOff => self.camera.next = None,
             Command::SetFrameRate(rate) => {
                 self.camera.every = match rate {
@@ -177,6 +180,7 @@ impl<P: Physics> Emulator<P> {
                     command: Command::Land,
                     reply_to: from,
                     index: self.answering,
+                    is_second_part: false,
                 });
             }
             Err(refusal) => self.answer(from, text_of(refusal)),
@@ -193,7 +197,8 @@ impl<P: Physics> Emulator<P> {
         if let Some(refusal) = self.refusal(&command) {
             return self.answer(from, text_of(refusal));
         }
-        let Some(action) = Action::of(&command, self.speed) else {
+        let action = Action::of(&command, self.speed).or_else(|| self.pad_action(&command));
+        let Some(action) = action else {
             let _ = self.body.physics.begin(self.now, Action::Hover);
             return self.answer(from, text_of(Refusal::NotValidMarker));
         };
@@ -206,6 +211,7 @@ impl<P: Physics> Emulator<P> {
                     command,
                     reply_to: from,
                     index: self.answering,
+                    is_second_part: false,
                 });
             }
             Err(refusal) => self.answer(from, text_of(refusal)),

@@ -20,7 +20,7 @@ impl<P: Physics> Emulator<P> {
             0.0
         };
         let warm = self.body.temperature(&self.config);
-        StateLine {
+        let mut line = StateLine {
             pitch: whole(truth.attitude_deg[0]),
             roll: whole(truth.attitude_deg[1]),
             yaw: whole(truth.attitude_deg[2]),
@@ -34,7 +34,9 @@ impl<P: Physics> Emulator<P> {
             time: Some(self.body.motor_time.as_secs() as f64),
             acceleration: truth.acceleration.map(|a| Some(a / 9.806_65 * 1000.0)),
             ..StateLine::default()
-        }
+        };
+        self.add_pad(&mut line);
+        line
     }
 
     pub(super) fn send_state(&mut self) {

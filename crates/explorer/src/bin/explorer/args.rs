@@ -61,7 +61,8 @@ pub(crate) enum Command {
     /// Be a Tello, or several, on UDP for any client, until interrupted.
     ///
     /// State lines come at 10 Hz, and real H.264 (a moving test card of 960 x 720) while video is on. The
-    /// times are those of a real drone: a take-off takes 4 s.
+    /// times are those of a real drone: a take-off takes 4 s. Mission pads 1 to 4 lie ahead of each drone, a metre apart,
+    /// the first under it.
     Emulate(Emulate),
 }
 

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
-use tello_sdk::SdkVersion;
 use tello_sdk::emulator::udp::{DroneServer, ServeConfig, ServeError};
-use tello_sdk::emulator::{EmulatorConfig, Faults, Summary, VideoSource};
+use tello_sdk::emulator::{EmulatorConfig, Faults, FloorPad, Summary, VideoSource};
 use tello_sdk::video::TestCard;
+use tello_sdk::{PadNumber, SdkVersion};
 
 use crate::args::{Emulate, Output};
 use crate::failure::Failure;
@@ -34,6 +34,7 @@ fn configuration(arguments: &Emulate, seed: u64) -> Result<ServeConfig, Failure>
         version: version(&arguments.sdk),
         state_port: arguments.state_port,
         video_port: arguments.video_port,
+        pads: pads(),
         faults,
         seed,
         ..EmulatorConfig::default()
@@ -45,6 +46,18 @@ fn configuration(arguments: &Emulate, seed: u64) -> Result<ServeConfig, Failure>
         binary: arguments.sdk == "binary",
         drone,
     })
+}
+
+/// Mission pads 1 to 4, from the place of power-on a metre apart straight ahead.
+fn pads() -> Vec<FloorPad> {
+    let lie = |number: u8| {
+        Some(FloorPad {
+            number: PadNumber::from_number(i64::from(number)).ok()?,
+            position: [f64::from(number) - 1.0, 0.0],
+            yaw_deg: 0.0,
+        })
+    };
+    (1..=4).filter_map(lie).collect()
 }
 
 fn version(sdk: &str) -> SdkVersion {
