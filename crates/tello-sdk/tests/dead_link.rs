@@ -95,6 +95,7 @@ fn dying_drone(address: Ipv4Addr, how: &str, closes: bool) -> (Vec<Duration>, bo
         }
     }
     let _ = child.kill();
+    let _ = child.wait();
     panic!("the process did not end: {lands:?}");
 }
 

@@ -5,9 +5,12 @@
 
 mod checksum;
 mod clock;
+mod command;
+mod config;
 mod emulated;
 mod flight_data;
 mod frame;
+mod landing;
 mod log;
 mod message;
 mod reports;
@@ -16,12 +19,12 @@ mod sticks;
 
 pub use checksum::{crc8, crc16};
 pub use clock::TickClock;
+pub use command::{BinaryCommand, BinaryEvent, BinaryOutput, CommandId, Ending};
+pub use config::BinaryConfig;
 pub use emulated::BinaryEmulator;
 pub use flight_data::FlightData;
 pub use frame::{Frame, FrameError};
 pub use log::{Gyro, Imu, LogRecord, LogRecords, Odometry, RecordKind, encode_record};
 pub use message::Message;
-pub use session::{
-    BinaryCommand, BinaryConfig, BinaryEvent, BinaryOutput, BinarySession, CommandId, Ending,
-};
+pub use session::BinarySession;
 pub use sticks::{decode_sticks, encode_sticks};

@@ -5,139 +5,20 @@
 //! flight data say that the drone is on the ground. Drain [`BinarySession::poll_output`] after every call.
 
 use super::clock::TickClock;
+use super::command::{BinaryCommand, BinaryEvent, BinaryOutput, CommandId, Ending};
+use super::config::BinaryConfig;
 use super::flight_data::FlightData;
 use super::frame::Frame;
+use super::landing::{LATEST, Landing};
 use super::log::{LogRecord, LogRecords, RecordKind};
 use super::message::Message;
 use super::sticks::encode_sticks;
-use crate::safety::{Alarm, Guard, SafetyConfig, outside};
+use crate::safety::{Alarm, Guard};
 use crate::session::Sticks;
 use crate::telemetry::{Source, Telemetry};
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::time::Duration;
-
-/// Settings of a [`BinarySession`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BinaryConfig {
-    /// Where the drone shall send video. Default 6038.
-    pub video_port: u16,
-    /// Period of the stick message. Default 20 ms, as gobot has it.
-    pub stick_period: Duration,
-    /// Without a new set-point for this long the sticks are centred. Default 500 ms.
-    pub stick_watchdog: Duration,
-    /// Wait for an acknowledgement. Default 1.5 s.
-    pub ack_timeout: Duration,
-    /// Repetition of the connection request, and of `land`. Default 1 s.
-    pub repeat: Duration,
-    /// When `land` is given up as unconfirmed. Default 60 s.
-    pub land_give_up: Duration,
-    /// Repetition of the request for video. Default 2 s.
-    pub video_repeat: Duration,
-    /// Silence after which the connection is made anew. Default 2 s.
-    pub link_timeout: Duration,
-    /// What makes the session land by itself. The drone tells no temperature in this protocol, only that it is hot.
-    pub safety: SafetyConfig,
-}
-
-impl Default for BinaryConfig {
-    fn default() -> Self {
-        let ms = Duration::from_millis;
-        Self {
-            video_port: 6038,
-            stick_period: ms(20),
-            stick_watchdog: ms(500),
-            ack_timeout: ms(1500),
-            repeat: ms(1000),
-            land_give_up: ms(60_000),
-            video_repeat: ms(2000),
-            link_timeout: ms(2000),
-            safety: SafetyConfig::default(),
-        }
-    }
-}
-
-/// A command with an acknowledgement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum BinaryCommand {
-    /// Take off.
-    TakeOff,
-    /// Land; repeated until confirmed.
-    Land,
-    /// Take off when thrown.
-    ThrowAndGo,
-    /// Land on a palm.
-    PalmLand,
-    /// Flip: 0 forward, 1 left, 2 back, 3 right, 4 to 7 diagonally.
-    Flip(u8),
-    /// Bit rate of the video: 0 automatic, 1 to 5.
-    EncoderRate(u8),
-}
-
-impl BinaryCommand {
-    fn frame(self) -> (Message, u8, Vec<u8>) {
-        match self {
-            Self::TakeOff => (Message::TakeOff, 0x68, Vec::new()),
-            Self::Land => (Message::Land, 0x68, [0].into()),
-            Self::ThrowAndGo => (Message::ThrowAndGo, 0x48, [0].into()),
-            Self::PalmLand => (Message::PalmLand, 0x68, [0].into()),
-            Self::Flip(direction) => (Message::Flip, 0x70, [direction.min(7)].into()),
-            Self::EncoderRate(rate) => (Message::EncoderRate, 0x68, [rate.min(5)].into()),
-        }
-    }
-}
-
-/// Names a command.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct CommandId(u64);
-
-/// How a command ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Ending {
-    /// The drone acknowledged it (it may still refuse to carry it out: look at the telemetry).
-    Acknowledged,
-    /// The flight data confirm it (land).
-    Confirmed,
-    /// No acknowledgement came; it was not sent again.
-    Unknown,
-}
-
-/// Something to know.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum BinaryEvent {
-    /// The handshake is done.
-    Connected,
-    /// Nothing was heard for the link timeout; the handshake begins anew.
-    Disconnected,
-    /// A command ended.
-    Finished {
-        /// Which.
-        id: CommandId,
-        /// The command.
-        command: BinaryCommand,
-        /// How.
-        ending: Ending,
-    },
-    /// [`BinarySession::telemetry`] has new values.
-    Telemetry,
-    /// The sticks were centred by the watchdog.
-    SticksCentered,
-    /// The session lands by itself.
-    Alarm(Alarm),
-}
-
-/// What the caller has to do.
-#[derive(Debug, Clone, PartialEq)]
-pub enum BinaryOutput {
-    /// Send to the drone's command port.
-    Send(Vec<u8>),
-    /// Something to know.
-    Event(BinaryEvent),
-    /// Nothing until this time or the next datagram.
-    WaitUntil(Duration),
-}
 
 #[derive(Debug, Clone, Copy)]
 struct Pending {
@@ -147,41 +28,30 @@ struct Pending {
     deadline: Duration,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Landing {
-    /// `None` for the session's own landing.
-    id: Option<CommandId>,
-    since: Duration,
-    next: Duration,
-}
-
 /// One drone in the binary protocol.
 #[derive(Debug, Clone)]
 pub struct BinarySession {
-    config: BinaryConfig,
-    now: Duration,
+    pub(super) config: BinaryConfig,
+    pub(super) now: Duration,
     connected: bool,
     next_request: Duration,
     next_sticks: Duration,
     next_video: Option<Duration>,
     heard: Duration,
-    sticks: Sticks,
-    sticks_set: Option<Duration>,
+    pub(super) sticks: Sticks,
+    pub(super) sticks_set: Option<Duration>,
     pending: Vec<Pending>,
-    landing: Option<Landing>,
+    pub(super) landing: Option<Landing>,
     sequence: u16,
     next_id: u64,
-    telemetry: Telemetry,
+    pub(super) telemetry: Telemetry,
     clock: TickClock,
     first_attitude: Option<Duration>,
-    guard: Guard,
-    lift_off_until: Option<Duration>,
+    pub(super) guard: Guard,
+    pub(super) lift_off_until: Option<Duration>,
     rejected: u64,
-    outputs: VecDeque<BinaryOutput>,
+    pub(super) outputs: VecDeque<BinaryOutput>,
 }
-
-/// Later times are taken as this one (a hundred years), so that sums of times cannot overflow.
-const LATEST: Duration = Duration::from_secs(100 * 365 * 86_400);
 
 /// A take-off may take this long to show in the flight data.
 const LIFT_OFF: Duration = Duration::from_millis(1500);
@@ -237,37 +107,6 @@ impl BinarySession {
         }
         self.advance();
         Ok(id)
-    }
-
-    fn begin_landing(&mut self, id: Option<CommandId>) {
-        if let Some(old) = self.landing.take() {
-            self.end_landing(old.id, Ending::Unknown);
-        }
-        self.sticks = Sticks::CENTER;
-        self.sticks_set = None;
-        self.landing = Some(Landing {
-            id,
-            since: self.now,
-            next: self.now,
-        });
-    }
-
-    fn end_landing(&mut self, id: Option<CommandId>, ending: Ending) {
-        if let Some(id) = id {
-            self.finish(id, BinaryCommand::Land, ending);
-        }
-    }
-
-    /// Reports a position from outside for the fence, metres.
-    pub fn report_position(&mut self, now: Duration, position: [f64; 3]) {
-        self.now = self.now.max(now.min(LATEST));
-        if let Some(fence) = &self.config.safety.fence {
-            let distance_cm = outside(fence, position);
-            if distance_cm > 0 && self.guard.is_flying() {
-                self.raise(Alarm::Fence { distance_cm });
-            }
-        }
-        self.advance();
     }
 
     /// Accepts commands again after an alarm.
@@ -448,7 +287,7 @@ impl BinarySession {
         });
     }
 
-    fn send(&mut self, message: Message, kind: u8, payload: &[u8]) -> u16 {
+    pub(super) fn send(&mut self, message: Message, kind: u8, payload: &[u8]) -> u16 {
         self.sequence = self.sequence.wrapping_add(1);
         let sequence = self.sequence;
         let frame = Frame {
@@ -461,7 +300,7 @@ impl BinarySession {
         sequence
     }
 
-    fn finish(&mut self, id: CommandId, command: BinaryCommand, ending: Ending) {
+    pub(super) fn finish(&mut self, id: CommandId, command: BinaryCommand, ending: Ending) {
         let event = BinaryEvent::Finished {
             id,
             command,
@@ -470,21 +309,7 @@ impl BinarySession {
         self.outputs.push_back(BinaryOutput::Event(event));
     }
 
-    fn raise(&mut self, alarm: Alarm) {
-        if self.guard.raise(alarm) {
-            self.land_on(alarm);
-        }
-    }
-
-    fn land_on(&mut self, alarm: Alarm) {
-        self.outputs
-            .push_back(BinaryOutput::Event(BinaryEvent::Alarm(alarm)));
-        if self.landing.is_none() {
-            self.begin_landing(None);
-        }
-    }
-
-    fn advance(&mut self) {
+    pub(super) fn advance(&mut self) {
         let safety = self.config.safety;
         if let Some(alarm) = self
             .guard
@@ -521,33 +346,6 @@ impl BinarySession {
         while let Some(index) = self.pending.iter().position(|p| p.deadline <= self.now) {
             let lost = self.pending.swap_remove(index);
             self.finish(lost.id, lost.command, Ending::Unknown);
-        }
-    }
-
-    fn step_landing(&mut self) {
-        let Some(mut landing) = self.landing else {
-            return;
-        };
-        let landed = self
-            .telemetry
-            .flying
-            .is_some_and(|f| !f.value && f.at > landing.since);
-        let lifting = self.lift_off_until.is_some_and(|until| self.now < until);
-        // A landing on an alarm is repeated until the drone stands, whatever the time.
-        let alarmed = self.guard.latched().is_some();
-        let late = self.now.saturating_sub(landing.since) >= self.config.land_give_up;
-        if landed && !lifting {
-            self.landing = None;
-            return self.end_landing(landing.id, Ending::Confirmed);
-        } else if late && !alarmed {
-            self.landing = None;
-            return self.end_landing(landing.id, Ending::Unknown);
-        }
-        if landing.next <= self.now {
-            let (message, kind, payload) = BinaryCommand::Land.frame();
-            self.send(message, kind, &payload);
-            landing.next = self.now + self.config.repeat;
-            self.landing = Some(landing);
         }
     }
 
