@@ -1,7 +1,8 @@
 //! Canny's edge detector (Canny 1986): smooth, differentiate, thin, and keep weak edges that touch strong ones.
 
-use super::gradient::{Gradient, sobel};
-use crate::image::{GrayView, gaussian_blur};
+use super::gradient::{GradientRow, sobel_at};
+use super::thinning::{STRONG, WEAK, strength, thin};
+use crate::image::{GrayImage, GrayView, gaussian_blur};
 use crate::simd::widest;
 
 /// How the strength of a gradient is measured (Sobel units: eight times grey levels per pixel).
@@ -98,15 +99,15 @@ impl CannyConfig {
     }
 }
 
-/// Thin edges of an image, one pixel wide, with the gradients they came from.
+/// Thin edges of an image, one pixel wide, with the smoothed image they came from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgeMap {
     pub(super) width: usize,
     pub(super) height: usize,
     /// [`EDGE`] where there is one; with a margin of one pixel all around.
-    pub(super) class: Vec<u8>,
-    pub(super) gradient: Gradient,
-    pub(super) norm: Norm,
+    class: Vec<u8>,
+    smooth: GrayImage,
+    norm: Norm,
 }
 
 impl EdgeMap {
@@ -134,25 +135,22 @@ impl EdgeMap {
         self.class.iter().filter(|&&class| class == EDGE).count()
     }
 
+    /// Gradient at a pixel of the image, Sobel units: across and down.
+    pub(super) fn gradient(&self, x: usize, y: usize) -> [i32; 2] {
+        sobel_at(&self.smooth.view(), x, y)
+    }
+
     /// Strength at a pixel, squared for [`Norm::L2`]; 0 outside.
     pub(super) fn strength(&self, x: usize, y: usize) -> i32 {
         if x >= self.width || y >= self.height {
             return 0;
         }
-        let index = y * self.width + x;
-        let (gx, gy) = (self.gradient.across[index], self.gradient.down[index]);
-        strength(i32::from(gx), i32::from(gy), self.norm)
+        let [gx, gy] = self.gradient(x, y);
+        strength(gx, gy, self.norm)
     }
 }
 
-const NONE: u8 = 0;
-const WEAK: u8 = 1;
-const STRONG: u8 = 2;
 pub(super) const EDGE: u8 = 3;
-
-/// tan 22.5° and tan 67.5° in 1/2^15: the borders between the four directions of thinning.
-const TAN_22: i32 = 13_573;
-const TAN_67: i32 = 79_109;
 
 /// Finds edges. Cost: O(pixels).
 ///
@@ -173,34 +171,29 @@ const TAN_67: i32 = 79_109;
 pub fn canny(view: &GrayView<'_>, config: &CannyConfig) -> Result<EdgeMap, CannyError> {
     config.validate()?;
     let (width, height) = (view.width(), view.height());
-    let gradient = if config.sigma > 0.0 {
-        sobel(&gaussian_blur(view, config.sigma, 2).view())
+    let smooth = if config.sigma > 0.0 {
+        gaussian_blur(view, config.sigma, 2)
     } else {
-        sobel(view)
+        unchanged(view)
     };
-    let mut class = thin(
-        &gradient,
-        width,
-        height,
-        config.norm,
-        limits(config, &gradient),
-    );
+    let limits = limits(config, &smooth.view());
+    let mut class = thin(&smooth.view(), config.norm, limits);
     keep_connected(&mut class, width + 2);
     Ok(EdgeMap {
         width,
         height,
         class,
-        gradient,
+        smooth,
         norm: config.norm,
     })
 }
 
-#[inline(always)]
-fn strength(gx: i32, gy: i32, norm: Norm) -> i32 {
-    match norm {
-        Norm::L1 => gx.abs() + gy.abs(),
-        Norm::L2 => gx * gx + gy * gy,
+fn unchanged(view: &GrayView<'_>) -> GrayImage {
+    let mut copy = GrayImage::filled(view.width(), view.height(), 0);
+    for (y, row) in copy.pixels_mut().chunks_exact_mut(view.width()).enumerate() {
+        row.copy_from_slice(view.row(y));
     }
+    copy
 }
 
 /// Both thresholds in the unit of [`strength`].
@@ -208,11 +201,11 @@ fn strength(gx: i32, gy: i32, norm: Norm) -> i32 {
     clippy::cast_possible_truncation,
     reason = "clamped; float to integer saturates"
 )]
-fn limits(config: &CannyConfig, gradient: &Gradient) -> [i32; 2] {
+fn limits(config: &CannyConfig, smooth: &GrayView<'_>) -> [i32; 2] {
     let (low, high) = match config.thresholds {
         Thresholds::Fixed { low, high } => (low, high),
         Thresholds::Median { factor, ratio } => {
-            let high = factor * median_strength(gradient, config.norm);
+            let high = factor * median_strength(smooth, config.norm);
             (ratio * high, high)
         }
     };
@@ -230,16 +223,24 @@ fn limits(config: &CannyConfig, gradient: &Gradient) -> [i32; 2] {
     clippy::cast_precision_loss,
     reason = "strengths of bytes are below 2048"
 )]
-fn median_strength(gradient: &Gradient, norm: Norm) -> f64 {
+fn median_strength(smooth: &GrayView<'_>, norm: Norm) -> f64 {
     let mut histogram = vec![0_usize; 2048];
-    for (&gx, &gy) in gradient.across.iter().zip(&gradient.down) {
-        let value = strength(i32::from(gx), i32::from(gy), norm);
-        let length = if norm == Norm::L2 {
-            (value as f32).sqrt()
-        } else {
-            value as f32
-        };
-        histogram[(length as usize).min(2047)] += 1;
+    let mut row = GradientRow::new(smooth.width());
+    let mut lengths = vec![0_u16; smooth.width()];
+    for y in 0..smooth.height() {
+        widest(|| {
+            row.compute(smooth, y);
+            for ((to, &gx), &gy) in lengths.iter_mut().zip(&row.across).zip(&row.down) {
+                let value = strength(i32::from(gx), i32::from(gy), norm);
+                *to = match norm {
+                    Norm::L1 => value as u16,
+                    Norm::L2 => (value as f32).sqrt() as u16,
+                };
+            }
+        });
+        for &length in &lengths {
+            histogram[usize::from(length).min(2047)] += 1;
+        }
     }
     histogram[0] = 0;
     let total: usize = histogram.iter().sum();
@@ -251,92 +252,17 @@ fn median_strength(gradient: &Gradient, norm: Norm) -> f64 {
     middle.unwrap_or(0) as f64
 }
 
-/// The class of each pixel, nothing, weak or strong, with a margin of one pixel of nothing all around.
-fn thin(gradient: &Gradient, width: usize, height: usize, norm: Norm, limits: [i32; 2]) -> Vec<u8> {
-    let mut class = vec![NONE; (width + 2) * (height + 2)];
-    // Strengths of the row above, here and below, with a margin of zeros as well.
-    let mut lines = [
-        vec![0_i32; width + 2],
-        vec![0_i32; width + 2],
-        vec![0_i32; width + 2],
-    ];
-    let row = |y: usize| {
-        let span = y * width..(y + 1) * width;
-        (&gradient.across[span.clone()], &gradient.down[span])
-    };
-    fill(row(0), norm, &mut lines[1][1..=width]);
-    for y in 0..height {
-        if y + 1 < height {
-            fill(row(y + 1), norm, &mut lines[2][1..=width]);
-        } else {
-            lines[2].fill(0);
-        }
-        let (gx, gy) = row(y);
-        let start = (y + 1) * (width + 2) + 1;
-        let target = &mut class[start..start + width];
-        widest(|| thin_row([&lines[0], &lines[1], &lines[2]], gx, gy, limits, target));
-        lines.rotate_left(1);
-    }
-    class
-}
-
-fn fill((gx, gy): (&[i16], &[i16]), norm: Norm, line: &mut [i32]) {
-    match norm {
-        Norm::L1 => widest(|| fill_as(gx, gy, Norm::L1, line)),
-        Norm::L2 => widest(|| fill_as(gx, gy, Norm::L2, line)),
-    }
-}
-
-#[inline(always)]
-fn fill_as(gx: &[i16], gy: &[i16], norm: Norm, line: &mut [i32]) {
-    for ((to, &gx), &gy) in line.iter_mut().zip(gx).zip(gy) {
-        *to = strength(i32::from(gx), i32::from(gy), norm);
-    }
-}
-
-#[inline(always)]
-fn thin_row(
-    [above, here, below]: [&Vec<i32>; 3],
-    gx: &[i16],
-    gy: &[i16],
-    [low, high]: [i32; 2],
-    class: &mut [u8],
-) {
-    let n = class.len();
-    let (gx, gy) = (&gx[..n], &gy[..n]);
-    let ([a, b, c], [d, e, f], [g, h, k]) = (thirds(above, n), thirds(here, n), thirds(below, n));
-    for i in 0..n {
-        let (x, y) = (i32::from(gx[i]), i32::from(gy[i]));
-        let (wide, tall) = (x.abs(), y.abs() << 15);
-        let centre = e[i];
-        let across = (tall < wide * TAN_22) & (centre > d[i]) & (centre >= f[i]);
-        let down = (tall > wide * TAN_67) & (centre > b[i]) & (centre >= h[i]);
-        let diagonal = (tall >= wide * TAN_22) & (tall <= wide * TAN_67);
-        let falling = (x ^ y) >= 0;
-        let (before, behind) = if falling { (a[i], k[i]) } else { (c[i], g[i]) };
-        let slanted = diagonal & (centre > before) & (centre > behind);
-        let peak = (across | down | slanted) & (centre > low);
-        class[i] = u8::from(peak) + u8::from(peak & (centre > high));
-    }
-}
-
-#[inline(always)]
-fn thirds(line: &[i32], n: usize) -> [&[i32]; 3] {
-    [&line[..n], &line[1..=n], &line[2..n + 2]]
-}
-
 /// Turns strong pixels and the weak ones connected to them (8 neighbours) into edges; others stay weak.
 fn keep_connected(class: &mut [u8], stride: usize) {
     let mut stack = Vec::new();
     for word in 0..class.len().div_ceil(8) {
         let span = word * 8..(word * 8 + 8).min(class.len());
         // Most stretches are empty: one test for eight pixels.
-        if class[span.clone()]
-            .iter()
-            .fold(0, |all, &value| all | value)
-            & STRONG
-            == 0
-        {
+        let any = match class[span.clone()].first_chunk::<8>() {
+            Some(bytes) => u64::from_le_bytes(*bytes) & u64::from_le_bytes([STRONG; 8]) != 0,
+            None => true,
+        };
+        if !any {
             continue;
         }
         for start in span {

@@ -95,9 +95,7 @@ fn follow(edges: &EdgeMap, taken: &mut [bool], x: usize, y: usize) -> Vec<(usize
 /// Moves an edge pixel along its gradient, by at most half a step, to the peak of a parabola.
 #[expect(clippy::cast_precision_loss, reason = "pixel coordinates")]
 fn refine(edges: &EdgeMap, x: usize, y: usize) -> EdgePoint {
-    let index = y * edges.width + x;
-    let gx = f64::from(edges.gradient.across[index]);
-    let gy = f64::from(edges.gradient.down[index]);
+    let [gx, gy] = edges.gradient(x, y).map(f64::from);
     let length = gx.hypot(gy).max(f64::MIN_POSITIVE);
     let normal = [gx / length, gy / length];
     // The nearest of eight neighbours along the gradient, as in the thinning.

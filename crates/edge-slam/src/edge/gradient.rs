@@ -1,47 +1,62 @@
-//! Sobel gradients of a grey image, borders repeated.
+//! Sobel gradients of a grey image, borders repeated: row by row, or at one pixel.
+//!
+//! In Sobel units, eight times the derivative in grey levels per pixel. Rows are never all kept: for a whole image
+//! they are four times as large as the image, and writing them costs more than computing them.
 
 use crate::image::GrayView;
-use crate::simd::widest;
 
-/// Eight times the derivative in grey levels per pixel, row by row.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Gradient {
+/// Room for one row of gradients and for its vertical halves.
+#[derive(Debug, Clone)]
+pub(super) struct GradientRow {
     pub(super) across: Vec<i16>,
     pub(super) down: Vec<i16>,
+    /// A row smoothed, and one differenced vertically, with their border columns repeated.
+    smooth: Vec<i16>,
+    slope: Vec<i16>,
 }
 
-/// The 3x3 Sobel derivatives. Cost: O(pixels).
-pub(super) fn sobel(view: &GrayView<'_>) -> Gradient {
-    let (width, height) = (view.width(), view.height());
-    let mut gradient = Gradient {
-        across: vec![0; width * height],
-        down: vec![0; width * height],
-    };
-    // A row, smoothed and differenced vertically, with its border columns repeated.
-    let mut smooth = vec![0_i16; width + 2];
-    let mut slope = vec![0_i16; width + 2];
-    let rows = gradient
-        .across
-        .chunks_exact_mut(width)
-        .zip(gradient.down.chunks_exact_mut(width));
-    for (y, (across, down)) in rows.enumerate() {
-        let (above, here, below) = (view.row(y.saturating_sub(1)), view.row(y), view.row(y + 1));
-        widest(|| {
-            vertical(
-                above,
-                here,
-                below,
-                &mut smooth[1..=width],
-                &mut slope[1..=width],
-            );
-            for line in [&mut smooth, &mut slope] {
-                line[0] = line[1];
-                line[width + 1] = line[width];
-            }
-            horizontal(&smooth, &slope, across, down);
-        });
+impl GradientRow {
+    pub(super) fn new(width: usize) -> Self {
+        Self {
+            across: vec![0; width],
+            down: vec![0; width],
+            smooth: vec![0; width + 2],
+            slope: vec![0; width + 2],
+        }
     }
-    gradient
+
+    /// Computes row `y` of the image. Inline it into a vectorised loop.
+    #[inline(always)]
+    pub(super) fn compute(&mut self, view: &GrayView<'_>, y: usize) {
+        let width = self.across.len();
+        let (above, here, below) = (view.row(y.saturating_sub(1)), view.row(y), view.row(y + 1));
+        vertical(
+            above,
+            here,
+            below,
+            &mut self.smooth[1..=width],
+            &mut self.slope[1..=width],
+        );
+        for line in [&mut self.smooth, &mut self.slope] {
+            line[0] = line[1];
+            line[width + 1] = line[width];
+        }
+        horizontal(&self.smooth, &self.slope, &mut self.across, &mut self.down);
+    }
+}
+
+/// The gradient at a pixel of the image: across and down.
+#[inline]
+pub(super) fn sobel_at(view: &GrayView<'_>, x: usize, y: usize) -> [i32; 2] {
+    let rows = [view.row(y.saturating_sub(1)), view.row(y), view.row(y + 1)];
+    let right = (x + 1).min(view.width() - 1);
+    let columns = [x.saturating_sub(1), x.min(right), right];
+    let [[a, b, c], [d, _, f], [g, h, i]] =
+        rows.map(|row| columns.map(|column| i32::from(row[column])));
+    [
+        (c - a) + 2 * (f - d) + (i - g),
+        (g - a) + 2 * (h - b) + (i - c),
+    ]
 }
 
 #[inline(always)]
@@ -70,6 +85,7 @@ fn horizontal(smooth: &[i16], slope: &[i16], across: &mut [i16], down: &mut [i16
 mod tests {
     use super::*;
     use crate::image::GrayImage;
+    use proptest::prelude::*;
 
     #[test]
     fn a_ramp_has_its_slope() {
@@ -79,13 +95,28 @@ mod tests {
             5,
         )
         .unwrap();
-        let gradient = sobel(&image.view());
-        assert_eq!(
-            (gradient.across[2 * 7 + 3], gradient.down[2 * 7 + 3]),
-            (80, 24)
-        );
-        assert_eq!((gradient.across[2 * 7], gradient.down[3]), (40, 12));
-        let one = sobel(&GrayImage::filled(1, 1, 200).view());
-        assert_eq!((one.across, one.down), (vec![0], vec![0]));
+        let mut row = GradientRow::new(7);
+        row.compute(&image.view(), 2);
+        assert_eq!((row.across[3], row.down[3]), (80, 24));
+        assert_eq!(sobel_at(&image.view(), 0, 2)[0], 40);
+        assert_eq!(sobel_at(&image.view(), 3, 0)[1], 12);
+        assert_eq!(sobel_at(&GrayImage::filled(1, 1, 200).view(), 0, 0), [0, 0]);
+    }
+
+    proptest! {
+        #[test]
+        fn rows_and_single_pixels_agree(
+            width in 1usize..12, height in 1usize..12, pixels in prop::collection::vec(any::<u8>(), 144),
+        ) {
+            let image = GrayImage::new(pixels, width, height).unwrap();
+            let mut row = GradientRow::new(width);
+            for y in 0..height {
+                row.compute(&image.view(), y);
+                for x in 0..width {
+                    let pair = [i32::from(row.across[x]), i32::from(row.down[x])];
+                    prop_assert_eq!(pair, sobel_at(&image.view(), x, y));
+                }
+            }
+        }
     }
 }

@@ -6,6 +6,7 @@ mod gradient;
 mod junction;
 mod lift;
 mod line;
+mod thinning;
 
 pub use canny::{CannyConfig, CannyError, EdgeMap, Norm, Thresholds, canny};
 pub use chain::{EdgeChain, EdgePoint, trace_chains};
