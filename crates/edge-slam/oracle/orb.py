@@ -129,7 +129,7 @@ def main():
     }.items():
         frames = frames[::5]
         paths = [frame[0] for frame in frames]
-        runs = [(f"ours ({s})", *ours(binary, s, paths)) for s in ("spread", "strongest")]
+        runs = [(f"ours ({s})", *ours(binary, s, paths)) for s in ("balanced", "spread", "strongest")]
         runs.append(("OpenCV", *opencv(paths)))
         for gap in (1, 3):
             pairs = [(i, i + gap) for i in range(len(frames) - gap)]

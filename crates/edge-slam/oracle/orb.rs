@@ -1,6 +1,6 @@
 //! Writes the ORB features of images as text, for the comparison in `orb.py`.
 //!
-//! Usage: orb spread|strongest COUNT IMAGE... ; prints per image a line "features N microseconds T" and N lines
+//! Usage: orb balanced|spread|strongest COUNT IMAGE... ; prints per image a line "features N microseconds T" and N lines
 //! "x y octave w0 w1 w2 w3". The time is that on the processor, the mean of several.
 #![allow(
     clippy::print_stdout,
@@ -22,8 +22,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let selection = match arguments.next().as_deref() {
         Some("spread") => Selection::Spread,
+        Some("balanced") => Selection::Balanced,
         Some("strongest") => Selection::Strongest,
-        _ => return Err("spread or strongest?".into()),
+        _ => return Err("balanced, spread or strongest?".into()),
     };
     let features = arguments.next().ok_or("COUNT is missing")?.parse()?;
     let extractor = OrbExtractor::new(OrbConfig {

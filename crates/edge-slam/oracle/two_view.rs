@@ -16,8 +16,9 @@ use std::time::Instant;
 
 use cpu_time::cpu_seconds;
 use edge_slam::camera::{Camera, PinholeCamera, RadialTangential};
-use edge_slam::feature::{Features, MatchConfig, OrbConfig, OrbExtractor, match_descriptors};
+use edge_slam::feature::{Features, MatchConfig, OrbExtractor, match_descriptors};
 use edge_slam::nalgebra::{Matrix4, Point2};
+use edge_slam::odometry::OdometryConfig;
 use edge_slam::sequence::decode_gray;
 use edge_slam::two_view::{TwoView, TwoViewConfig, estimate_two_view};
 use rand::SeedableRng;
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         pinhole: PinholeCamera::new(fx, fy, cx, cy)?,
         distortion,
     };
-    let extractor = OrbExtractor::new(OrbConfig::default())?;
+    let extractor = OrbExtractor::new(OdometryConfig::default().orb)?;
     let features = |path: &String| -> Result<Features, Box<dyn Error>> {
         Ok(extractor.extract(&decode_gray(&std::fs::read(path)?)?.view()))
     };

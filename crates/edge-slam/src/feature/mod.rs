@@ -1,5 +1,6 @@
 //! Point features: FAST corners, orientation, rotated BRIEF, ORB over a pyramid, and matching.
 
+mod balance;
 mod brief;
 mod config;
 mod fast;
@@ -9,6 +10,7 @@ mod orb;
 mod orientation;
 mod spread;
 
+pub use balance::balanced_corners;
 pub use brief::Descriptor;
 pub use config::{OrbConfig, OrbConfigError, Selection};
 pub use fast::{Corner, fast_corners};

@@ -1,15 +1,17 @@
-//! ORB (Rublee et al. 2011): oriented FAST corners and rotated BRIEF over a pyramid, spread by a quadtree.
+//! ORB (Rublee et al. 2011): oriented FAST corners and rotated BRIEF over a pyramid.
 //!
 //! 1. Pyramid of `levels` images, each `scale_factor` smaller.
-//! 2. FAST per level; cells without a corner are searched again with the low threshold.
-//! 3. Each level keeps its share of the features, proportional to its side, spread by a quadtree.
+//! 2. FAST per level; for an even spread, cells without a corner are searched again with the low threshold.
+//! 3. Each level keeps its share of the features, proportional to its side: the strongest, or as [`Selection`] says.
 //! 4. Direction from the intensity centroid; descriptor on the level smoothed with σ = 2.
 
 use super::brief::{PATCH_RADIUS, RotatedPattern};
 use super::fast::{Region, detect};
 use super::harris::harris;
 use super::orientation::{DISC_RADIUS, orientation};
-use super::{Corner, Descriptor, OrbConfig, OrbConfigError, Selection, spread_corners};
+use super::{
+    Corner, Descriptor, OrbConfig, OrbConfigError, Selection, balanced_corners, spread_corners,
+};
 use crate::image::{GrayImage, GrayView, Pyramid, smooth_with, weights};
 use crate::simd::widest;
 
@@ -146,22 +148,20 @@ impl OrbExtractor {
 
     /// At most `share` of the corners, in reading order of their detection, with their Harris responses.
     fn choose(&self, view: &GrayView<'_>, mut corners: Vec<Corner>, share: usize) -> Vec<Ranked> {
-        let strongest = self.config.selection == Selection::Strongest;
-        if strongest && corners.len() > 2 * share {
+        if self.config.selection == Selection::Strongest && corners.len() > 2 * share {
             corners.sort_by_key(|corner| core::cmp::Reverse(corner.score));
             corners.truncate(2 * share);
             corners.sort_by_key(|corner| (corner.y, corner.x));
         }
         let rank = |corner: &Corner| harris(view, corner.x as usize, corner.y as usize);
         let responses: Vec<f32> = widest(|| corners.iter().map(rank).collect());
-        let chosen = if strongest {
-            let mut order: Vec<usize> = (0..corners.len()).collect();
-            order.sort_by(|&a, &b| responses[b].total_cmp(&responses[a]));
-            order.truncate(share);
-            order.sort_unstable();
-            order
-        } else {
-            spread_corners(&corners, &responses, share)
+        let chosen = match self.config.selection {
+            Selection::Strongest => strongest(&responses, share),
+            Selection::Balanced => {
+                let size = [view.width(), view.height()];
+                balanced_corners(&corners, &responses, share, size)
+            }
+            Selection::Spread => spread_corners(&corners, &responses, share),
         };
         chosen
             .into_iter()
@@ -223,6 +223,15 @@ impl OrbExtractor {
                 .push(self.pattern.describe(smooth, x, y, angle));
         }
     }
+}
+
+/// Indices of the `count` greatest responses, ascending.
+fn strongest(responses: &[f32], count: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..responses.len()).collect();
+    order.sort_by(|&a, &b| responses[b].total_cmp(&responses[a]));
+    order.truncate(count);
+    order.sort_unstable();
+    order
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! What the odometry can be told, and what it refuses.
 
-use crate::feature::{MatchConfig, OrbConfig, OrbConfigError};
+use crate::feature::{MatchConfig, OrbConfig, OrbConfigError, Selection};
 use crate::pnp::PnpConfig;
 use crate::two_view::TwoViewConfig;
 
 /// Parameters of [`super::Odometry`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OdometryConfig {
-    /// Features of each frame.
+    /// Features of each frame. Default 1,000, chosen by [`Selection::Balanced`].
     pub orb: OrbConfig,
     /// Matching of a frame with its keyframe.
     pub matching: MatchConfig,
@@ -30,7 +30,10 @@ pub struct OdometryConfig {
 impl Default for OdometryConfig {
     fn default() -> Self {
         Self {
-            orb: OrbConfig::default(),
+            orb: OrbConfig {
+                selection: Selection::Balanced,
+                ..OrbConfig::default()
+            },
             matching: MatchConfig::default(),
             two_view: TwoViewConfig::default(),
             pnp: PnpConfig {
