@@ -11,6 +11,7 @@ mod scene;
 mod sight;
 mod simulation;
 mod stage;
+mod telemetry;
 
 pub use atlas::{Atlas, KnownLimits, Portal, PortalState, Site};
 pub use calibration::{Calibration, MoveKind};
@@ -26,3 +27,4 @@ pub use scene::{Presence, Scene, SceneError};
 pub use sight::Sight;
 pub use simulation::{FlightSummary, SimulatedFlight, SimulationError};
 pub use stage::{Stage, StageObserver};
+pub use telemetry::{attitude_sample, flight_sample, velocity_frame};

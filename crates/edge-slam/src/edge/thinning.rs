@@ -115,10 +115,6 @@ fn thin_row<T: Copy + PartialOrd>(
 /// ⌊x tan 22.5°⌋ for x in 0..2^14. A whole number is at most x tan 22.5° exactly when it is at most this; the
 /// product is whole itself only for x = 0, whose pixels are too weak for an edge or upright.
 #[inline(always)]
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the high half of a product of 16-bit numbers"
-)]
 fn times_tan_22(x: i16) -> i16 {
     ((i32::from(2 * x) * TAN_22) >> 16) as i16
 }

@@ -119,6 +119,7 @@ pub struct Outcome {
 /// 95 % points of χ² with 3 and 6 degrees of freedom.
 const GATE_3: f64 = 7.81;
 const GATE_6: f64 = 12.59;
+const INITIAL_POSITION_SIGMA: f64 = 0.01;
 const REJECTIONS: u32 = 3;
 const INFLATION: f64 = 10.0;
 
@@ -165,7 +166,7 @@ impl Ekf {
                 name: "the initial state",
             });
         }
-        let (p, a) = (0.01_f64.powi(2), 1_f64.to_radians().powi(2));
+        let (p, a) = (INITIAL_POSITION_SIGMA.powi(2), 1_f64.to_radians().powi(2));
         let s = config.initial_scale_sigma.powi(2);
         let covariance = StateCovariance::from_diagonal(&SVector::from([p, p, p, a, a, a, s]));
         let filter = Self {
@@ -217,6 +218,17 @@ impl Ekf {
         self.covariance.column_mut(6).fill(0.0);
         self.covariance[(6, 6)] = sigma * sigma;
         Ok(())
+    }
+
+    /// Takes the present position for exact (1 cm, as at the start), so that the covariance from now on is that of the
+    /// way since here: what an odometry measures that is anchored here. Without this the doubt about where the anchor
+    /// lies would be taken for a doubt about the way from it, and the scale would be bent to fit.
+    pub fn anchor_here(&mut self) {
+        self.covariance.fixed_rows_mut::<3>(0).fill(0.0);
+        self.covariance.fixed_columns_mut::<3>(0).fill(0.0);
+        for k in 0..3 {
+            self.covariance[(k, k)] = INITIAL_POSITION_SIGMA * INITIAL_POSITION_SIGMA;
+        }
     }
 
     /// Moves the state to the sample's time with its velocity.
@@ -289,7 +301,10 @@ impl Ekf {
     }
 
     /// Corrects position, attitude and scale with a displacement since an anchor:
-    /// 0 = R₀ᵀ (p − p₀) − eˢ d, so that ∂/∂s = −eˢ d.
+    /// 0 = R₀ᵀ (p − p₀) − eˢ d, so that ∂/∂s = −eˢ d, which is −R₀ᵀ (p − p₀) at the solution.
+    ///
+    /// The latter is used: with the measured d the slope would share its noise with the innovation, and every update
+    /// would shrink the scale a little.
     ///
     /// # Errors
     /// [`FusionError`] for numbers that are not finite or a pitch that is too steep.
@@ -309,10 +324,11 @@ impl Ekf {
         self.check_pitch(odometry.attitude.y)?;
         let scaled = odometry.displacement * self.state.scale();
         let back = odometry.anchor_rotation.inverse();
-        let predicted = back * (self.state.position - odometry.anchor_position) - scaled;
+        let way = back * (self.state.position - odometry.anchor_position);
+        let predicted = way - scaled;
         let mut matrix = SMatrix::<f64, 6, 7>::zeros();
         matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(back.matrix());
-        matrix.fixed_view_mut::<3, 1>(0, 6).copy_from(&-scaled);
+        matrix.fixed_view_mut::<3, 1>(0, 6).copy_from(&-way);
         matrix.fixed_view_mut::<3, 3>(3, 3).fill_with_identity();
         self.fix(
             -predicted,

@@ -7,7 +7,9 @@ mod config;
 mod keyframe;
 mod map_builder;
 mod sight;
+mod telemetry;
 mod tracker;
 
 pub use config::{OdometryConfig, OdometryError};
+pub use telemetry::{FusedPose, TelemetryFusion};
 pub use tracker::{Odometry, Tracked};
