@@ -1,20 +1,20 @@
 //! Three drones take off together, fly forward and land.
 //!
-//! Input: addresses of drones in station mode (`192.168.1.21:8889 ...`); without any, three emulated drones on 127.0.0.2 to
+//! Input: addresses of drones in station mode (`--drone 192.168.1.21:8889 --drone ...`); without any, three emulated drones on 127.0.0.2 to
 //! 127.0.0.4 are started in this process. Output: the drones found and how each flight ended.
 
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
 use std::net::SocketAddr;
-use std::sync::Barrier;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use tello_sdk::emulator::udp::{ServeConfig, serve};
-use tello_sdk::{Distance, Drone, DroneConfig, StateHub, discover};
+use tello_sdk::{Distance, DriveError, Drone, DroneConfig, StateHub, discover, together};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let given: Result<Vec<SocketAddr>, _> = std::env::args().skip(1).map(|a| a.parse()).collect();
+    let words = std::env::args().skip(1).filter(|word| word != "--drone");
+    let given: Result<Vec<SocketAddr>, _> = words.map(|a| a.parse()).collect();
     let given = given?;
     if !given.is_empty() {
         return swarm(&given);
@@ -38,29 +38,24 @@ fn swarm(addresses: &[SocketAddr]) -> Result<(), Box<dyn Error>> {
     let any = SocketAddr::from(([0, 0, 0, 0], 0));
     let found = discover(any, addresses, Duration::from_secs(2))?;
     let hub = StateHub::bind(SocketAddr::from(([0, 0, 0, 0], 8890)))?;
-    let barrier = Barrier::new(found.len());
-    std::thread::scope(|scope| {
-        for drone in &found {
-            println!("found {} {:?}", drone.address, drone.serial_number);
-            scope.spawn(|| {
-                // One drone's failure does not keep the others from flying.
-                println!(
-                    "{}: {:?}",
-                    drone.address,
-                    fly(&hub, drone.address, &barrier).is_ok()
-                );
-            });
-        }
-    });
+    let mut drones = Vec::new();
+    for drone in &found {
+        println!("found {} {:?}", drone.address, drone.serial_number);
+        drones.push(Drone::connect_through(
+            &hub,
+            DroneConfig::at(drone.address),
+        )?);
+    }
+    let drones: Vec<&Drone> = drones.iter().collect();
+    // One drone's failure does not keep the others from flying.
+    for (drone, flown) in found.iter().zip(together(&drones, hop)) {
+        println!("{}: {flown:?}", drone.address);
+    }
     Ok(())
 }
 
-fn fly(hub: &StateHub, address: SocketAddr, start: &Barrier) -> Result<(), Box<dyn Error>> {
-    let drone = Drone::connect_through(hub, DroneConfig::at(address));
-    start.wait();
-    let drone = drone?;
+fn hop(drone: &Drone) -> Result<(), DriveError> {
     drone.take_off()?;
-    drone.forward(Distance::from_cm(50)?)?;
-    drone.land()?;
-    Ok(())
+    drone.forward(Distance::MIN)?;
+    drone.land()
 }

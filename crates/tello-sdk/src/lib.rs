@@ -28,8 +28,8 @@ pub use command::{
 pub use driver::AsyncDrone;
 #[cfg(feature = "std")]
 pub use driver::{
-    BinaryDrone, BinaryDroneConfig, ConnectError, DriveError, Drone, DroneConfig, Found, StateHub,
-    VideoConfig, VideoHub, VideoStream, discover,
+    BinaryDrone, BinaryDroneConfig, ConnectError, DriveError, Drone, DroneConfig, Found, Lander,
+    StateHub, VideoConfig, VideoHub, VideoStream, discover, subnet, together,
 };
 pub use reply::{Refusal, Reply, ReplyKind};
 pub use safety::{Alarm, Finding, PreflightConfig, SafetyConfig, preflight};

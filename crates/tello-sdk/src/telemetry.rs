@@ -100,6 +100,33 @@ pub struct Temperature {
     pub high_c: i16,
 }
 
+impl Reading<Velocity> {
+    /// Standard deviation of each component by the rounding of the wire alone, m/s; the sensor's own noise comes on top
+    /// and is not published. A twelfth of a step's square is the variance.
+    #[must_use]
+    pub fn rounding_noise(&self) -> f64 {
+        let step = match self.source {
+            Source::Log => 0.01,
+            Source::TextState | Source::FlightData | Source::Simulated => 0.1,
+        };
+        step * UNIFORM
+    }
+}
+
+impl Reading<Attitude> {
+    /// Standard deviation of each angle by the rounding of the wire alone, degrees; zero for the log's quaternions.
+    #[must_use]
+    pub fn rounding_noise(&self) -> f64 {
+        match self.source {
+            Source::Log => 0.0,
+            Source::TextState | Source::FlightData | Source::Simulated => UNIFORM,
+        }
+    }
+}
+
+/// Standard deviation of a uniform distribution of width one: the root of a twelfth.
+const UNIFORM: f64 = 0.288_675_134_594_812_9;
+
 /// What the mission-pad detection reports (SDK 2.0 and later).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PadSighting {

@@ -67,6 +67,67 @@ fn a_flight_over_sockets() {
 }
 
 #[test]
+fn a_lander_ends_the_flight_from_another_thread() {
+    with_drone(Ipv4Addr::new(127, 0, 0, 27), |config| {
+        let drone = Drone::connect(config.clone()).unwrap();
+        assert_eq!(drone.sdk_version().unwrap(), SdkVersion::V2_0);
+        drone.take_off().unwrap();
+        let lander = drone.lander();
+        std::thread::scope(|scope| {
+            scope.spawn(|| lander.land());
+        });
+        // Whatever is asked for from now on ends with an error.
+        assert!((0..100).any(|_| drone.query(Query::Wifi).is_err()));
+        drop(drone);
+        let again = Drone::connect(config).unwrap();
+        assert!(
+            again.forward(Distance::MIN).is_err(),
+            "it stands on the ground"
+        );
+    });
+}
+
+#[test]
+fn without_pictures_there_is_no_take_off_that_needs_them() {
+    with_drone(Ipv4Addr::new(127, 0, 0, 28), |config| {
+        let drone = Drone::connect(config).unwrap();
+        let bind = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let video = VideoConfig {
+            bind,
+            ..VideoConfig::default()
+        };
+        let stream = VideoStream::open(video).unwrap();
+        let refused = drone.take_off_seeing(&stream).unwrap_err();
+        assert_eq!(
+            refused,
+            DriveError::Preflight(vec![Finding::NoVideo { age_ms: None }])
+        );
+    });
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn sockets_can_be_bound_to_an_interface() {
+    with_drone(Ipv4Addr::new(127, 0, 0, 29), |config| {
+        let on = |name: &str| DroneConfig {
+            interface: Some(name.into()),
+            ..config.clone()
+        };
+        let wrong = Drone::connect(on("nosuch0")).unwrap_err();
+        assert!(matches!(wrong, ConnectError::Bind { .. }), "{wrong}");
+        match Drone::connect(on("lo")) {
+            Ok(drone) => assert!(drone.battery().is_ok()),
+            Err(ConnectError::Bind { source, .. })
+                if source.kind() == std::io::ErrorKind::PermissionDenied =>
+            {
+                println!("binding to an interface is not allowed here: not tested");
+            }
+            Err(other) => panic!("{other}"),
+        }
+    });
+}
+
+#[test]
 fn dropping_the_connection_lands() {
     with_drone(Ipv4Addr::new(127, 0, 0, 22), |config| {
         let drone = Drone::connect(config.clone()).unwrap();

@@ -11,6 +11,7 @@ use crate::session::{Sticks, Verdict};
 use crate::telemetry::Telemetry;
 use alloc::boxed::Box;
 use alloc::collections::BTreeMap;
+use alloc::string::String;
 use alloc::vec::Vec;
 use core::net::{Ipv4Addr, SocketAddr};
 use core::time::Duration;
@@ -23,6 +24,8 @@ pub struct BinaryDroneConfig {
     pub drone: SocketAddr,
     /// Local command socket. Default any address, port chosen by the system.
     pub bind: SocketAddr,
+    /// Network interface that the socket is bound to, by name (Linux). Default any.
+    pub interface: Option<String>,
     /// The session's settings; the port for video is among them.
     pub session: BinaryConfig,
     /// What must hold before [`BinaryDrone::take_off`].
@@ -38,6 +41,7 @@ impl Default for BinaryDroneConfig {
         Self {
             drone: SocketAddr::from(([192, 168, 10, 1], 8889)),
             bind: SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0)),
+            interface: None,
             session: BinaryConfig::default(),
             preflight: PreflightConfig::default(),
             connect_timeout: Duration::from_secs(5),
@@ -77,7 +81,7 @@ impl BinaryDrone {
     /// The socket cannot be bound, the drone does not answer, or sends no log.
     pub fn connect(config: BinaryDroneConfig) -> Result<Self, ConnectError> {
         let (timeout, drone, local) = (config.connect_timeout, config.drone, config.bind);
-        let socket = bind(local)?;
+        let socket = bind(local, config.interface.as_ref())?;
         let replies = socket.try_clone().map_err(ConnectError::Thread)?;
         let (publish, events) = sync_channel(EVENTS);
         let pilot = Pilot {

@@ -6,27 +6,43 @@ use super::engine::{Answer, Connection};
 use super::error::{ConnectError, DriveError, settle};
 use super::hub::StateHub;
 use super::pilot::{Message, Status};
-use crate::command::{Command, Query};
+use super::video::VideoStream;
+use crate::command::{Command, Query, SdkVersion};
 use crate::reply::Reply;
-use crate::session::{Counters, Event, Motors, Sticks};
+use crate::safety::Finding;
+use crate::session::{Counters, Event, Motors, RequestError, Sticks};
 use crate::telemetry::Telemetry;
 use crate::units::{Battery, Distance, Turn};
 use alloc::boxed::Box;
 use alloc::string::String;
 use core::time::Duration;
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::{Receiver, Sender, sync_channel};
+use std::sync::{Mutex, PoisonError};
 
 /// Events that wait for [`Drone::next_event`] at most.
 pub(super) const EVENTS: usize = 1024;
 
-/// A connected drone.
+/// A connected drone; it can be used from several threads.
 ///
 /// Dropping it (also while a panic unwinds) lands a drone that may be flying: land is repeated until the telemetry
 /// confirms it or [`DroneConfig::landing_timeout`] has passed.
 #[derive(Debug)]
 pub struct Drone {
     connection: Connection<Message>,
-    events: Receiver<Event>,
+    events: Mutex<Receiver<Event>>,
+}
+
+/// Lands a drone from anywhere and ends its connection: what waits on the drone ends with an error, and dropping the
+/// [`Drone`] waits for the landing as always.
+#[derive(Debug, Clone)]
+pub struct Lander(Sender<Message>);
+
+impl Lander {
+    /// Lands if it may be flying; returns at once.
+    pub fn land(&self) {
+        // A connection that has ended has landed.
+        let _ = self.0.send(Message::Close);
+    }
 }
 
 impl Drone {
@@ -52,6 +68,7 @@ impl Drone {
         // Nobody has to listen; when the queue is full the newest event is dropped.
         let publish = Box::new(move |event| drop(publish.try_send(event)));
         let connection = connect::connect(config, hub, publish)?;
+        let events = Mutex::new(events);
         Ok(Self { connection, events })
     }
 
@@ -69,7 +86,23 @@ impl Drone {
     /// # Errors
     /// A finding of the preflight, or the take-off failed.
     pub fn take_off(&self) -> Result<(), DriveError> {
-        let findings = self.ask(Message::Preflight)?;
+        self.take_off_unless(None)
+    }
+
+    /// Like [`Drone::take_off`], and the video must have brought a key frame within the last two seconds.
+    ///
+    /// # Errors
+    /// As [`Drone::take_off`], or there is no picture.
+    pub fn take_off_seeing(&self, video: &VideoStream) -> Result<(), DriveError> {
+        let age = video.key_frame_age();
+        let seen = age.is_some_and(|age| age <= Duration::from_secs(2));
+        let age_ms = age.map(|age| age.as_millis() as u64);
+        self.take_off_unless((!seen).then_some(Finding::NoVideo { age_ms }))
+    }
+
+    fn take_off_unless(&self, blind: Option<Finding>) -> Result<(), DriveError> {
+        let mut findings = self.ask(Message::Preflight)?;
+        findings.extend(blind);
         if !findings.is_empty() {
             return Err(DriveError::Preflight(findings));
         }
@@ -174,7 +207,35 @@ impl Drone {
 
     /// Waits for the next event; `None` after the timeout. At most 1024 wait, newer ones are dropped.
     pub fn next_event(&self, timeout: Duration) -> Option<Event> {
-        self.events.recv_timeout(timeout).ok()
+        let events = self.events.lock();
+        let events = events.unwrap_or_else(PoisonError::into_inner);
+        events.recv_timeout(timeout).ok()
+    }
+
+    /// The SDK that the drone speaks, by its answer to `sdk?`; one that does not know the question speaks 1.3.
+    ///
+    /// # Errors
+    /// As [`Drone::execute`], or the answer is no known version.
+    pub fn sdk_version(&self) -> Result<SdkVersion, DriveError> {
+        let reply = match self.execute(Command::Query(Query::Sdk)) {
+            Err(
+                DriveError::Refused { .. } | DriveError::Request(RequestError::Unsupported { .. }),
+            ) => {
+                return Ok(SdkVersion::V1_3);
+            }
+            other => other?,
+        };
+        match reply.number() {
+            Some(20.0) => Ok(SdkVersion::V2_0),
+            Some(30.0) => Ok(SdkVersion::V3_0),
+            _ => Err(DriveError::NotAValue { raw: reply.raw }),
+        }
+    }
+
+    /// A handle that lands the drone from anywhere, a signal handler for example.
+    #[must_use]
+    pub fn lander(&self) -> Lander {
+        Lander(self.connection.inbox.clone())
     }
 
     fn status(&self) -> Result<Status, DriveError> {

@@ -2,6 +2,7 @@
 
 use crate::safety::PreflightConfig;
 use crate::session::SessionConfig;
+use alloc::string::String;
 use core::net::{Ipv4Addr, SocketAddr};
 use core::time::Duration;
 use std::path::PathBuf;
@@ -15,6 +16,9 @@ pub struct DroneConfig {
     pub command_bind: SocketAddr,
     /// Local state socket. Default any address, port 8890.
     pub state_bind: SocketAddr,
+    /// Network interface that both sockets are bound to, by name (Linux): for several drones with the same address.
+    /// Default any.
+    pub interface: Option<String>,
     /// The session's settings.
     pub session: SessionConfig,
     /// What must hold before [`Drone::take_off`](super::Drone::take_off).
@@ -34,6 +38,7 @@ impl Default for DroneConfig {
             drone: SocketAddr::from(([192, 168, 10, 1], 8889)),
             command_bind: any(0),
             state_bind: any(8890),
+            interface: None,
             session: SessionConfig::default(),
             preflight: PreflightConfig::default(),
             connect_timeout: Duration::from_secs(5),

@@ -6,9 +6,11 @@ use super::error::{ConnectError, DriveError, settle};
 use super::hub::StateHub;
 use super::pilot::{Message, Pilot};
 use super::recorder::Recorder;
+use super::socket;
 use crate::command::Command;
 use crate::session::{Event, Session};
 use alloc::boxed::Box;
+use alloc::string::String;
 use core::net::SocketAddr;
 use std::net::UdpSocket;
 use std::sync::mpsc::{RecvTimeoutError, channel, sync_channel};
@@ -43,8 +45,10 @@ fn start(
     publish: Box<dyn FnMut(Event) + Send>,
 ) -> Result<Connection<Message>, ConnectError> {
     let (drone, state_bind) = (config.drone, config.state_bind);
-    let socket = bind(config.command_bind)?;
-    let state = hub.is_none().then(|| bind(state_bind)).transpose()?;
+    let interface = config.interface.as_ref();
+    let socket = bind(config.command_bind, interface)?;
+    let state = hub.is_none().then(|| bind(state_bind, interface));
+    let state = state.transpose()?;
     let replies = socket.try_clone().map_err(ConnectError::Thread)?;
     let session = Session::new(config.session.clone())?;
     let recorder = Recorder::create(config.record.as_deref())?;
@@ -72,6 +76,9 @@ pub(super) fn ask<M: Send + 'static, T: Send + 'static>(
     result.recv().map_err(|_| DriveError::Closed)
 }
 
-pub(super) fn bind(address: SocketAddr) -> Result<UdpSocket, ConnectError> {
-    UdpSocket::bind(address).map_err(|source| ConnectError::Bind { address, source })
+pub(super) fn bind(
+    address: SocketAddr,
+    interface: Option<&String>,
+) -> Result<UdpSocket, ConnectError> {
+    socket::bind(address, interface).map_err(|source| ConnectError::Bind { address, source })
 }

@@ -5,7 +5,7 @@ use crate::reply::{Reply, ReplyKind};
 use alloc::collections::BTreeMap;
 use alloc::string::String;
 use alloc::vec::Vec;
-use core::net::SocketAddr;
+use core::net::{Ipv4Addr, SocketAddr};
 use core::time::Duration;
 use std::net::UdpSocket;
 use std::time::Instant;
@@ -48,6 +48,18 @@ pub fn discover(
         }
     });
     Ok(found.collect())
+}
+
+/// Every address of a network but its first and last, as candidates for [`discover`]: `subnet([192, 168, 1, 0].into(), 24,
+/// 8889)` are 254. A prefix shorter than 16 is taken as 16: more is no home network.
+#[must_use]
+pub fn subnet(network: Ipv4Addr, prefix: u8, port: u16) -> Vec<SocketAddr> {
+    let hosts = u32::MAX.checked_shr(u32::from(prefix.clamp(16, 32)));
+    let hosts = hosts.unwrap_or(0);
+    let first = network.to_bits() & !hosts;
+    (1..hosts)
+        .map(|host| SocketAddr::from((Ipv4Addr::from_bits(first | host), port)))
+        .collect()
 }
 
 /// The first fitting reply of each address asked, until all have answered or the time is over; the silent ones are asked
@@ -93,5 +105,23 @@ fn collect(
                 replies.entry(from).or_insert(reply);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::ToString;
+
+    #[test]
+    fn a_network_has_its_hosts() {
+        let all = subnet([192, 168, 1, 77].into(), 24, 8889);
+        assert_eq!(
+            (all.len(), all[0]),
+            (254, SocketAddr::from(([192, 168, 1, 1], 8889)))
+        );
+        assert_eq!(all[253].ip().to_string(), "192.168.1.254");
+        assert_eq!(subnet([10, 0, 0, 0].into(), 0, 1).len(), 65_534);
+        assert!(subnet([10, 0, 0, 0].into(), 32, 1).is_empty());
     }
 }

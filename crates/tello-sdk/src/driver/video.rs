@@ -44,6 +44,7 @@ struct Waiting {
     units: VecDeque<AccessUnit>,
     counters: VideoCounters,
     overrun: u64,
+    last_key: Option<Duration>,
 }
 
 #[derive(Debug, Default)]
@@ -155,6 +156,13 @@ impl VideoStream {
         self.start.elapsed()
     }
 
+    /// How long ago the newest decodable key frame came.
+    #[must_use]
+    pub fn key_frame_age(&self) -> Option<Duration> {
+        let last = self.shared.lock().last_key?;
+        Some(self.now().saturating_sub(last))
+    }
+
     /// What was seen, and how many units were dropped because nobody took them.
     #[must_use]
     pub fn counters(&self) -> (VideoCounters, u64) {
@@ -241,6 +249,9 @@ impl Receiver {
         let mut waiting = self.shared.lock();
         waiting.counters = self.assembler.counters();
         for unit in units.into_iter().flatten() {
+            if unit.is_key && unit.is_decodable {
+                waiting.last_key = Some(unit.completed);
+            }
             if waiting.units.len() >= self.config.capacity.max(1) {
                 waiting.units.pop_front();
                 waiting.overrun += 1;

@@ -42,6 +42,14 @@ pub enum Finding {
         /// Needed, s.
         needed_s: u64,
     },
+    /// The video brings no pictures.
+    #[error(
+        "no key frame of the video (last one {age_ms:?} ms ago): send `streamon`, and check that the video port is open in the firewall"
+    )]
+    NoVideo {
+        /// Age of the newest key frame, ms; `None` if there was none.
+        age_ms: Option<u64>,
+    },
     /// It stands on a slope or is held.
     #[error("tilted by {degrees} degrees: put it on level ground")]
     Tilted {

@@ -31,7 +31,8 @@ pub struct AssemblerConfig {
     pub framing: Framing,
     /// Largest access unit, bytes; a longer one is dropped. Default 512 KiB (key frames have about 35 kB).
     pub max_unit: usize,
-    /// A unit without a short last datagram is delivered after this long without another. Default 20 ms.
+    /// A unit without a short last datagram is delivered after this long without another. Default 100 ms: the next unit
+    /// ends it sooner, and a link that stalls in the middle of a unit must not cut it in two.
     pub idle: Duration,
 }
 
@@ -40,7 +41,7 @@ impl Default for AssemblerConfig {
         Self {
             framing: Framing::Text,
             max_unit: 512 * 1024,
-            idle: Duration::from_millis(20),
+            idle: Duration::from_millis(100),
         }
     }
 }
@@ -270,8 +271,11 @@ impl Assembler {
         };
         let whole = matches!(integrity, Integrity::Intact | Integrity::Unverified);
         let intact_before = (self.chain && !self.lost) || is_key;
-        let is_decodable = self.has_sps && self.has_pps && intact_before && whole;
-        // A suspect unit may be whole; what follows is then decodable too, but that is not known.
+        // A suspect unit is most likely an exact multiple: nothing is known to be missing, the decoder may try.
+        let is_decodable = self.has_sps
+            && self.has_pps
+            && intact_before
+            && (whole || integrity == Integrity::Suspect);
         self.chain = is_decodable;
         self.lost = false;
         let (first, data) = (self.first, core::mem::take(&mut self.data));
@@ -359,10 +363,10 @@ mod tests {
         for datagram in unit.chunks(PAYLOAD) {
             assembler.push(Duration::ZERO, datagram);
         }
-        assert_eq!(assembler.handle_timeout(Duration::from_millis(19)), None);
+        assert_eq!(assembler.handle_timeout(Duration::from_millis(99)), None);
         assert_eq!(
             assembler
-                .handle_timeout(Duration::from_millis(20))
+                .handle_timeout(Duration::from_millis(100))
                 .unwrap()
                 .data,
             unit
