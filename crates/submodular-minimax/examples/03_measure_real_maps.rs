@@ -14,7 +14,9 @@ mod settings;
 
 use labelled::{Labelled, average_precision, f1, false_positive_rate};
 use std::error::Error;
-use submodular_minimax::{OutlierConfig, OutlierError, RayConfig, Views, remove_outliers};
+use submodular_minimax::{
+    OutlierConfig, OutlierError, RayConfig, Tolerance, Views, remove_outliers,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folders: Vec<String> = std::env::args().skip(1).collect();
@@ -63,6 +65,31 @@ fn main() -> Result<(), Box<dyn Error>> {
             "- without depth agreement",
             ranged(RayConfig {
                 depth_exponent: 0.0,
+                near_depth_exponent: 0.0,
+                ..rays
+            }),
+            true,
+        ),
+        (
+            "- Euclidean distances",
+            ranged(RayConfig {
+                range_exponent: 0.0,
+                ..rays
+            }),
+            true,
+        ),
+        (
+            "- angular distances",
+            ranged(RayConfig {
+                range_exponent: 1.0,
+                ..rays
+            }),
+            true,
+        ),
+        (
+            "- fixed tolerance, 4 times",
+            ranged(RayConfig {
+                tolerance: Tolerance::Fixed(4.0),
                 ..rays
             }),
             true,

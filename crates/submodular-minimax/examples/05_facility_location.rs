@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{:>6} {:>26} {:>10} {:>10} {:>10}",
         "n", "kernel", "bounded s", "lazy s", "naive s"
     );
-    for n in [1_000, 3_000, 10_000] {
+    for n in [1_000, 3_000, 10_000, 50_000] {
         if n > largest {
             break;
         }
@@ -35,6 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Kernel::Rational { scale: 3.0 },
             Kernel::Linear { reach: 2.0 },
             Kernel::Linear { reach: 20.0 },
+            Kernel::Reciprocal { scale: 1.0 },
         ] {
             let function = FacilityLocation::new(Points::new(&cloud.points, kernel)?);
             let start = cpu_seconds()?;

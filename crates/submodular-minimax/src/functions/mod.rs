@@ -5,6 +5,7 @@ mod combine;
 mod coverage;
 mod error;
 mod facility_location;
+mod far_field;
 mod graph_cut;
 mod modular;
 mod representation;

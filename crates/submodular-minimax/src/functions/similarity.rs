@@ -217,10 +217,15 @@ impl Similarity for Sparse {
 /// How similarity falls with distance d. All lie in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kernel {
-    /// (1 − d / reach)₊.
+    /// (1 − d / reach)₊; with the largest distance as reach what apricot makes of Euclidean distances.
     Linear {
         /// Where it reaches 0, in the unit of the points, above 0.
         reach: f64,
+    },
+    /// 1 / (1 + d / scale), what submodlib makes of Euclidean distances at scale 1.
+    Reciprocal {
+        /// Where it is one half, in the unit of the points, above 0.
+        scale: f64,
     },
     /// 1 / (1 + (d / scale)²).
     Rational {
@@ -250,7 +255,9 @@ impl Points {
             index: at.0,
             value: f64::NAN,
         })?;
-        let (Kernel::Linear { reach: length } | Kernel::Rational { scale: length }) = kernel;
+        let (Kernel::Linear { reach: length }
+        | Kernel::Reciprocal { scale: length }
+        | Kernel::Rational { scale: length }) = kernel;
         if !(length.is_finite() && length > 0.0) {
             return Err(FunctionError::Entry {
                 what: "kernel",
@@ -261,6 +268,9 @@ impl Points {
         let kernel = match kernel {
             Kernel::Linear { reach } => Kernel::Linear {
                 reach: reach / cloud.unit,
+            },
+            Kernel::Reciprocal { scale } => Kernel::Reciprocal {
+                scale: scale / cloud.unit,
             },
             Kernel::Rational { scale } => Kernel::Rational {
                 scale: scale / cloud.unit,
@@ -283,7 +293,36 @@ impl Points {
     pub(super) fn evaluate(&self, squared: f64) -> f64 {
         match self.kernel {
             Kernel::Linear { reach } => (1.0 - squared.sqrt() / reach).max(0.0),
+            Kernel::Reciprocal { scale } => 1.0 / (1.0 + squared.sqrt() / scale),
             Kernel::Rational { scale } => 1.0 / (1.0 + squared / (scale * scale)),
+        }
+    }
+
+    /// The squared distance up to which the kernel s(q) has derivatives of alternating sign.
+    pub(super) fn smooth_within(&self) -> f64 {
+        match self.kernel {
+            Kernel::Linear { reach } => reach * reach,
+            Kernel::Reciprocal { .. } | Kernel::Rational { .. } => f64::INFINITY,
+        }
+    }
+
+    /// (s(q) − s(m) − s'(m) (q − m)) / (q − m)² with m = `mean` > 0 and q = `squared`, both within
+    /// [`Self::smooth_within`]; falls in q.
+    pub(super) fn bend(&self, mean: f64, squared: f64) -> f64 {
+        match self.kernel {
+            Kernel::Linear { reach } => {
+                let (m, d) = (mean.sqrt(), squared.sqrt());
+                1.0 / (2.0 * reach * m * (d + m) * (d + m))
+            }
+            Kernel::Reciprocal { scale } => {
+                let (m, d) = (mean.sqrt(), squared.sqrt());
+                let (a, b, c) = (scale + m, scale + d, d + m);
+                scale * (b + 2.0 * m) / (2.0 * m * a * a * b * c * c)
+            }
+            Kernel::Rational { scale } => {
+                let area = scale * scale;
+                area / ((area + squared) * (area + mean) * (area + mean))
+            }
         }
     }
 }
@@ -331,6 +370,9 @@ impl Similarity for Points {
         match self.kernel {
             Kernel::Linear { reach } => lanes(n, |v| {
                 ((1.0 - squared(v).sqrt() / reach).max(0.0) - served[v]).max(0.0)
+            }),
+            Kernel::Reciprocal { scale } => lanes(n, |v| {
+                (1.0 / (1.0 + squared(v).sqrt() / scale) - served[v]).max(0.0)
             }),
             Kernel::Rational { scale } => {
                 let area = scale * scale;

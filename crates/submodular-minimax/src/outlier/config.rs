@@ -47,14 +47,33 @@ pub struct RayConfig {
     pub max_cameras: usize,
     /// Rise of λ(v) a violation in [`Reading::Rays`], at least 0, counted up to five; 0.05.
     pub violation_cost: f64,
+    /// Distances are divided by (r(u) r(v)) to half this power in [`Reading::Ranged`], at least 0; 0.8.
+    /// 0 is the Euclidean distance, 1 makes it an angle: between them lie the noise of depth cameras,
+    /// whose maps like 0.5, and of single cameras, whose maps like 1.
+    pub range_exponent: f64,
     /// Exponent of (1 + violations) in [`Reading::Ranged`], at least 0; 0.1.
     pub violation_exponent: f64,
-    /// Exponent of (depth disagreement + 0.02) in [`Reading::Ranged`], at least 0; 0.2.
+    /// Exponent of (depth disagreement with the wider image neighbours + 0.02) in
+    /// [`Reading::Ranged`], at least 0; 0.25.
     pub depth_exponent: f64,
+    /// Exponent of (depth disagreement with the nearest image neighbours + 0.02) in
+    /// [`Reading::Ranged`], at least 0; 0.15.
+    pub near_depth_exponent: f64,
     /// Neighbours whose normalised distances are averaged in [`Reading::Ranged`], at least 4; 20.
     pub neighbours: usize,
-    /// How many times the median badness is kept in [`Reading::Ranged`], above 0; 3.1.
-    pub tolerance: f64,
+    /// How many times the median badness is kept in [`Reading::Ranged`].
+    pub tolerance: Tolerance,
+}
+
+/// How many times the median badness a point may have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Tolerance {
+    /// This many times, above 0.
+    Fixed(f64),
+    /// As the map's own dirt tells: exp(0.08 / q), where q is the disagreement in depth with the
+    /// nearest image neighbours that one point in ten exceeds; between 2.5 and 9 times.
+    Measured,
 }
 
 /// Which score and cost the set function is made of. K = (1 − d/h)₊, d the Euclidean distance.
@@ -72,7 +91,8 @@ pub enum Reading {
     /// H: G, and each ray that passes through a point raises its λ. Without observations it is G.
     Rays,
     /// Distances divided by viewing ranges, and costs from depth agreement and violations. Without
-    /// observations it is G at the settings given. The default.
+    /// observations a cloud that thins out away from the origin is taken as seen from there, as maps
+    /// are whose frame is that of a camera; any other is read as G at the settings given. The default.
     Ranged,
 }
 
@@ -92,10 +112,12 @@ impl Default for RayConfig {
             margin: 1.2,
             max_cameras: 100,
             violation_cost: 0.05,
+            range_exponent: 0.8,
             violation_exponent: 0.1,
-            depth_exponent: 0.2,
+            depth_exponent: 0.25,
+            near_depth_exponent: 0.15,
             neighbours: 20,
-            tolerance: 3.1,
+            tolerance: Tolerance::Measured,
         }
     }
 }
@@ -230,9 +252,14 @@ impl RayConfig {
         at_least("rays.max_cameras", self.max_cameras, 1)?;
         not_negative("rays.violation_cost", self.violation_cost)?;
         not_negative("rays.violation_exponent", self.violation_exponent)?;
+        not_negative("rays.range_exponent", self.range_exponent)?;
         not_negative("rays.depth_exponent", self.depth_exponent)?;
+        not_negative("rays.near_depth_exponent", self.near_depth_exponent)?;
         at_least("rays.neighbours", self.neighbours, 4)?;
-        positive("rays.tolerance", self.tolerance)
+        match self.tolerance {
+            Tolerance::Fixed(times) => positive("rays.tolerance", times),
+            Tolerance::Measured => Ok(()),
+        }
     }
 }
 

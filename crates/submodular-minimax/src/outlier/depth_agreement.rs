@@ -2,36 +2,65 @@
 //!
 //! A wrong triangulation moves a point along its viewing ray, where it leaves the surface that its
 //! image neighbours lie on. For a point v and a camera c: the 20 points that c sees nearest to v in
-//! direction, |ln(|cv| / |cu|)| for each, and of these the tenth smallest, so that one side of a depth
-//! edge may disagree. The least over the first, the middle and the last observer counts.
+//! direction and |ln(|cv| / |cu|)| for each. Of all of these the tenth smallest counts, so that one
+//! side of a depth edge may disagree; of the nearest twelve the third smallest, so that v need only
+//! be one of a few. The least over the first, the middle and the last observer counts.
 //! Cost: three searches a point, O(log) each.
 
 use super::sight::Sight;
 use crate::neighbours::RangeTree;
 use crate::points::{Cloud, median};
 
-/// Image neighbours compared with.
-const AROUND: usize = 20;
-/// The rank of the disagreement that counts.
-const RANK: usize = 10;
+/// Image neighbours compared with, and the rank of the disagreement that counts.
+const WIDE: (usize, usize) = (20, 10);
+/// The same among the nearest of them.
+const NEAR: (usize, usize) = (12, 3);
 /// A camera that sees fewer points tells nothing.
 const FEWEST: usize = 50;
 
-/// The disagreement of every point, a log ratio at least 0; the median where no camera can tell.
-pub(super) fn depth_disagreement(cloud: &Cloud, sight: &Sight<'_>) -> Vec<f64> {
-    let mut least = vec![f64::INFINITY; cloud.len()];
-    for camera in 0..sight.cameras.len() {
-        compare_in_camera(cloud, sight, camera, &mut least);
-    }
-    let mut known: Vec<f64> = least.iter().copied().filter(|d| d.is_finite()).collect();
-    let typical = median(&mut known);
-    least
-        .into_iter()
-        .map(|d| if d.is_finite() { d } else { typical })
-        .collect()
+/// Log ratios of depths, at least 0, one a point; the median where no camera can tell.
+pub(super) struct DepthDisagreement {
+    /// With the wider image neighbourhood.
+    pub(super) wide: Vec<f64>,
+    /// With the nearest image neighbours.
+    pub(super) near: Vec<f64>,
+    /// The disagreement in `near` that one point in ten exceeds; `None` where no camera can tell.
+    pub(super) dirt: Option<f64>,
 }
 
-fn compare_in_camera(cloud: &Cloud, sight: &Sight<'_>, camera: usize, least: &mut [f64]) {
+impl DepthDisagreement {
+    pub(super) fn new(cloud: &Cloud, sight: &Sight<'_>) -> Self {
+        let mut wide = vec![f64::INFINITY; cloud.len()];
+        let mut near = wide.clone();
+        for camera in 0..sight.cameras.len() {
+            compare_in_camera(cloud, sight, camera, &mut wide, &mut near);
+        }
+        fill_unknown(&mut wide);
+        let dirt = fill_unknown(&mut near).map(|mut known| {
+            let at = known.len() * 9 / 10;
+            *known.select_nth_unstable_by(at, f64::total_cmp).1
+        });
+        Self { wide, near, dirt }
+    }
+}
+
+/// Gives what is not known the median of what is, which is returned.
+fn fill_unknown(values: &mut [f64]) -> Option<Vec<f64>> {
+    let mut known: Vec<f64> = values.iter().copied().filter(|d| d.is_finite()).collect();
+    let typical = median(&mut known);
+    for value in values.iter_mut().filter(|value| !value.is_finite()) {
+        *value = typical;
+    }
+    (!known.is_empty()).then_some(known)
+}
+
+fn compare_in_camera(
+    cloud: &Cloud,
+    sight: &Sight<'_>,
+    camera: usize,
+    wide: &mut [f64],
+    near: &mut [f64],
+) {
     let seen = &sight.seen[camera];
     if seen.len() < FEWEST {
         return;
@@ -47,13 +76,18 @@ fn compare_in_camera(cloud: &Cloud, sight: &Sight<'_>, camera: usize, least: &mu
         if !asked(sight.views.row(v), camera) {
             continue;
         }
-        tree.nearest(position, AROUND, f64::INFINITY, &mut found);
+        tree.nearest(position, WIDE.0, f64::INFINITY, &mut found);
         let own = depth[at as usize];
         disagreements.clear();
         disagreements.extend(found.iter().map(|n| log_ratio(own, depth[n.1 as usize])));
-        let (_, &mut middle, _) = disagreements.select_nth_unstable_by(RANK - 1, f64::total_cmp);
-        least[v] = least[v].min(middle);
+        near[v] = near[v].min(smallest(&mut disagreements[..NEAR.0], NEAR.1));
+        wide[v] = wide[v].min(smallest(&mut disagreements, WIDE.1));
     }
+}
+
+/// The `rank`th smallest, counted from 1.
+fn smallest(values: &mut [f64], rank: usize) -> f64 {
+    *values.select_nth_unstable_by(rank - 1, f64::total_cmp).1
 }
 
 /// Whether the camera is the first, the middle or the last observer.

@@ -19,12 +19,12 @@ const MOST_VIOLATIONS: u32 = 5;
 /// The problem of the cloud; `None` when it has no spacing (n < 5, or most points identical).
 pub(super) fn problem(
     cloud: &Cloud,
+    tree: &RangeTree,
     sight: Option<&Sight<'_>>,
     config: &OutlierConfig,
 ) -> Option<Problem> {
     let n = cloud.len();
-    let tree = RangeTree::new(&cloud.points, &[]);
-    let mut graph = NeighbourGraph::new(&tree, config.neighbours, f64::INFINITY);
+    let mut graph = NeighbourGraph::new(tree, config.neighbours, f64::INFINITY);
     let spacing = spacing(&graph)?;
     let beta = config.beta.value(n);
     let mut settings = Settings {
@@ -68,7 +68,8 @@ impl Settings {
     ///
     /// Up to 12 % every point counts as an inlier sooner; from 26 % on links are shorter and
     /// representatives need more support. From 10,000 to 50,000 points the threshold falls by a quarter, since
-    /// larger clouds are denser at their core and not at their fringe.
+    /// larger clouds are denser at their core and not at their fringe. Below 5,000 points true patches
+    /// are as small as clumps of outliers, and smaller components may represent.
     fn adapted(self, graph: &NeighbourGraph, reading: Reading) -> Self {
         let n = graph.len();
         let score = self.score(graph, reading);
@@ -81,12 +82,13 @@ impl Settings {
         };
         let removed = (0..n).filter(|&v| strict.best(v) <= STRICT).count();
         let dirt = ((removed as f64 / n as f64 - 0.12) / 0.14).clamp(0.0, 1.0);
+        let small = (n as f64 / 5e3).clamp(0.4, 1.0);
         let size = ((n as f64 / 1e4).ln() / 5.0_f64.ln()).clamp(0.0, 1.0);
         Self {
             reach: self.reach * (1.0 - dirt / 7.0),
             threshold: self.threshold * (2.0 + dirt) / 3.0 * (1.0 - size / 4.0),
             support: self.support * (1.0 + dirt),
-            min_component: self.min_component * (1.0 + dirt / 5.0),
+            min_component: self.min_component * (1.0 + dirt / 5.0) * small,
         }
     }
 

@@ -10,6 +10,7 @@ mod config;
 mod depth_agreement;
 mod error;
 mod kernel_reading;
+mod origin;
 mod problem;
 mod ranged_reading;
 mod removal;
@@ -17,19 +18,22 @@ mod sight;
 mod solve;
 mod violations;
 
-pub use config::{OutlierConfig, RayConfig, Reading, Solver};
+pub use config::{OutlierConfig, RayConfig, Reading, Solver, Tolerance};
 pub use error::OutlierError;
 pub use removal::OutlierRemoval;
 
 use crate::minimax::StopReason;
+use crate::neighbours::RangeTree;
 use crate::points::{Cloud, PointLike};
 use crate::views::Views;
 use sight::Sight;
 
 /// Splits the points into inliers and outliers.
 ///
-/// Points and camera positions share one frame and one unit, whatever it is. The result does not
-/// depend on the order of the points (but for exact ties), on a common scale or on the number of
+/// Points and camera positions share one frame and one unit, whatever it is. Without `views` the
+/// default asks whether the cloud thins out away from the origin, as maps do whose frame is that of
+/// their first camera, and then takes it as seen from there; pass [`Views::from_position`] where you
+/// know where the agent was. The result does not depend on the order of the points (but for exact ties), on a common scale or on the number of
 /// threads. No points, fewer than five points and points without spacing (more than half of them
 /// identical) are all kept. Cost: O(n log n) time, O(n) memory; with observations also one search per
 /// tested camera and point.
@@ -63,10 +67,16 @@ pub fn remove_outliers<P: PointLike>(
     if config.reading == Reading::Literal {
         return Ok(OutlierRemoval::keep_all(n, StopReason::Converged));
     }
-    let sight = views.and_then(|views| Sight::new(&cloud, views));
+    let tree = RangeTree::new(&cloud.points, &[]);
+    let assumed = (views.is_none() && config.reading == Reading::Ranged)
+        .then(|| origin::view(&cloud, &tree))
+        .flatten();
+    let sight = views
+        .or(assumed.as_ref())
+        .and_then(|views| Sight::new(&cloud, views));
     let problem = match (&sight, config.reading) {
         (Some(sight), Reading::Ranged) => ranged_reading::problem(&cloud, sight, config),
-        (sight, _) => kernel_reading::problem(&cloud, sight.as_ref(), config),
+        (sight, _) => kernel_reading::problem(&cloud, &tree, sight.as_ref(), config),
     };
     match problem {
         Some(problem) => solve::solve(&problem, config),

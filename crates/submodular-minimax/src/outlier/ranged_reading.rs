@@ -1,19 +1,22 @@
 //! The ranged reading: distances divided by viewing ranges, costs from what the cameras saw.
 //!
 //! ```text
-//! d(u, v)    = ‖u − v‖ / √(r(u) r(v)), r the median range from the observing cameras
+//! d(u, v)    = ‖u − v‖ / (r(u) r(v))^0.4, r the median range from the observing cameras
 //! D(u)       = mean of d to the 20 nearest neighbours
 //! s(u, v)    = 1 / (1 + (D(u) + d(u, v)) / unit), u ≠ v
-//! cue(v)     = (depth disagreement + 0.02)^0.2 · (1 + violations)^0.1
-//! θ(v)       = 1 / (1 + 3.1 σ / (cue(v) unit)), σ = median over v of cue(v) min over u of D(u) + d(u, v)
+//! cue(v)     = (wide depth disagreement + 0.02)^0.25 (near one + 0.02)^0.15 (1 + violations)^0.1
+//! θ(v)       = 1 / (1 + T σ / (cue(v) unit)), σ = median over v of cue(v) min over u of D(u) + d(u, v)
+//! ln T       = 0.08 / q, 0.9 to 2.2, q = the near disagreement that one point in ten exceeds
 //! ```
 //!
 //! So v stays if some other point in a dense neighbourhood is near, as seen from where it was seen; a
 //! point that disagrees with its image neighbours' depth or stands in free space must be nearer. Any
-//! s ≥ 0 and any λ ≥ 0 are legal, hence so are these.
+//! s ≥ 0 and any λ ≥ 0 are legal, hence so are these. How much is tolerated, T, follows from how many
+//! points have no image neighbour at their depth: a map of a single camera with 10 % of outliers and
+//! one of a depth camera with 1 % differ in that, and not in how their distances are distributed.
 
-use super::config::OutlierConfig;
-use super::depth_agreement::depth_disagreement;
+use super::config::{OutlierConfig, Tolerance};
+use super::depth_agreement::DepthDisagreement;
 use super::problem::{Problem, Score};
 use super::sight::Sight;
 use super::violations::violations;
@@ -25,7 +28,8 @@ pub(super) fn problem(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) 
     if cloud.len() < 5 {
         return None;
     }
-    let ranges = ranges(cloud, sight)?;
+    let powered = |r: f64| r.powf(config.rays.range_exponent);
+    let ranges: Vec<f64> = ranges(cloud, sight)?.into_iter().map(powered).collect();
     let tree = RangeTree::new(&cloud.points, &ranges);
     let graph = NeighbourGraph::new(&tree, config.rays.neighbours, f64::INFINITY);
     let mean =
@@ -39,10 +43,11 @@ pub(super) fn problem(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) 
         through.fold(f64::INFINITY, f64::min)
     };
     let badness: Vec<f64> = (0..cloud.len()).map(nearest).collect();
-    let cues = cues(cloud, sight, config);
+    let depth = DepthDisagreement::new(cloud, sight);
+    let cues = cues(cloud, sight, &depth, config);
     let unit = median(&mut badness.clone());
     let mut judged: Vec<f64> = badness.iter().zip(&cues).map(|(b, c)| b * c).collect();
-    let allowed = config.rays.tolerance * median(&mut judged);
+    let allowed = tolerance(config, &depth) * median(&mut judged);
     if !(unit > 0.0 && allowed > 0.0) {
         return None;
     }
@@ -82,23 +87,46 @@ fn ranges(cloud: &Cloud, sight: &Sight<'_>) -> Option<Vec<f64>> {
 }
 
 /// What the observations say against each point, above 0; 1 is neutral only by comparison.
-fn cues(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) -> Vec<f64> {
-    let (depth_exponent, violation_exponent) =
-        (config.rays.depth_exponent, config.rays.violation_exponent);
+fn cues(
+    cloud: &Cloud,
+    sight: &Sight<'_>,
+    depth: &DepthDisagreement,
+    config: &OutlierConfig,
+) -> Vec<f64> {
+    let rays = &config.rays;
     let mut cues = vec![1.0; cloud.len()];
-    if depth_exponent > 0.0 {
-        for (cue, depth) in cues.iter_mut().zip(depth_disagreement(cloud, sight)) {
-            *cue *= (depth + DEPTH_FLOOR).min(1e6).powf(depth_exponent);
+    for (disagreement, exponent) in [
+        (&depth.wide, rays.depth_exponent),
+        (&depth.near, rays.near_depth_exponent),
+    ] {
+        for (cue, disagreement) in cues.iter_mut().zip(disagreement) {
+            *cue *= (disagreement + DEPTH_FLOOR).min(1e6).powf(exponent);
         }
     }
-    if violation_exponent > 0.0 {
-        for (cue, count) in cues.iter_mut().zip(violations(cloud, sight, &config.rays)) {
-            *cue *= (1.0 + f64::from(count)).powf(violation_exponent);
+    if rays.violation_exponent > 0.0 {
+        for (cue, count) in cues.iter_mut().zip(violations(cloud, sight, rays)) {
+            *cue *= (1.0 + f64::from(count)).powf(rays.violation_exponent);
         }
     }
     cues
 }
 
+/// How many times the median badness is kept.
+fn tolerance(config: &OutlierConfig, depth: &DepthDisagreement) -> f64 {
+    match (config.rays.tolerance, depth.dirt) {
+        (Tolerance::Fixed(times), _) => times,
+        (Tolerance::Measured, None) => LOG_TOLERANCE.1.exp(),
+        (Tolerance::Measured, Some(dirt)) => {
+            let (least, _, most) = LOG_TOLERANCE;
+            (TOLERATED_DIRT / dirt).clamp(least, most).exp()
+        }
+    }
+}
+
+/// The least log tolerance, that without any camera that can tell, the largest.
+const LOG_TOLERANCE: (f64, f64, f64) = (0.9, 1.3, 2.2);
+/// The log tolerance times the near disagreement that one point in ten exceeds.
+const TOLERATED_DIRT: f64 = 0.08;
 /// Disagreements below this log ratio (2 %) are noise.
 const DEPTH_FLOOR: f64 = 0.02;
 /// Ranges count as at least this part of the median range.

@@ -6,6 +6,7 @@
 )]
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
+pub mod apartment;
 pub mod room;
 
 use std::collections::HashMap;
@@ -46,7 +47,7 @@ pub fn real_maps() -> Vec<Labelled> {
 }
 
 /// The synthetic apartment with its truth, if the data folder is there.
-pub fn apartment() -> Option<Labelled> {
+pub fn apartment_of_the_data_folder() -> Option<Labelled> {
     let folder = data_folder()?.join("synthetic-apartment");
     let (points, _) = read_ply(&folder.join("apt_10k_o15.ply"))?;
     let labels = std::fs::read(folder.join("apt_10k_o15.labels.npy")).ok()?;

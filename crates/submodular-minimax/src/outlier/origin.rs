@@ -1,0 +1,70 @@
+//! Was the cloud seen from the origin of its frame?
+//!
+//! A camera resolves angles, so the points of its map lie the farther apart the farther away they are.
+//! Where the frame is that of the first camera, as in SLAM maps, spacing therefore rises with the
+//! distance from the origin; where it is that of a building, it does not.
+//! Rank correlation of the two, at up to 2,000 points: 0.45 to 0.86 on ten real maps whose camera
+//! began at the origin, 0.14 on a synthetic apartment in the frame of the building.
+//! Cost: O(log n).
+
+use crate::neighbours::RangeTree;
+use crate::points::{Cloud, squared_distance};
+use crate::views::Views;
+
+/// Points whose spacing is looked at, at most.
+const SAMPLES: usize = 2_000;
+/// Neighbours whose mean distance is the spacing.
+const NEIGHBOURS: usize = 10;
+/// The rank correlation from which on the origin counts as a viewpoint.
+const LEAST_CORRELATION: f64 = 0.35;
+/// A camera has free space around it: one point in a hundred may be nearer than this many median
+/// ranges.
+const FREE: f64 = 0.1;
+
+/// The view from the origin, if the cloud was seen from there.
+pub(super) fn view(cloud: &Cloud, tree: &RangeTree) -> Option<Views> {
+    if cloud.len() < FEWEST {
+        return None;
+    }
+    let (mut ranges, mut spacings, mut found) = (Vec::new(), Vec::new(), Vec::new());
+    let step = cloud.len().div_ceil(SAMPLES);
+    for (position, &v) in tree.order().iter().enumerate().step_by(step) {
+        tree.nearest(position, NEIGHBOURS, f64::INFINITY, &mut found);
+        ranges.push(squared_distance(cloud.points[v as usize], [0.0; 3]));
+        spacings.push(found.iter().map(|n| n.0.sqrt()).sum());
+    }
+    let correlation = correlation(&ranks(&ranges), &ranks(&spacings));
+    ranges.sort_by(f64::total_cmp);
+    let (near, typical) = (
+        ranges[ranges.len() / 100].sqrt(),
+        ranges[ranges.len() / 2].sqrt(),
+    );
+    if correlation < LEAST_CORRELATION || near < FREE * typical {
+        return None;
+    }
+    Views::from_position([0.0; 3], cloud.len()).ok()
+}
+
+/// Fewer points show no trend.
+const FEWEST: usize = 100;
+
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let mut ranks = vec![0.0; values.len()];
+    for (rank, &at) in order.iter().enumerate() {
+        ranks[at] = rank as f64;
+    }
+    ranks
+}
+
+/// Of two permutations of 0 to n − 1.
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let middle = (a.len() as f64 - 1.0) / 2.0;
+    let (mut together, mut alone) = (0.0, 0.0);
+    for (a, b) in a.iter().zip(b) {
+        together += (a - middle) * (b - middle);
+        alone += (a - middle) * (a - middle);
+    }
+    if alone > 0.0 { together / alone } else { 0.0 }
+}
