@@ -41,12 +41,30 @@ fn main() -> Result<(), Box<dyn Error>> {
             .for_each(|(f1, ap)| print!(" {:>34}", format!("{f1:.3} / {ap:.3}")));
         println!();
     }
+    for (name, config, observed) in readings() {
+        print!("{name:34}");
+        for map in &maps {
+            row(map, map.views.as_ref().filter(|_| observed), &config)?;
+        }
+        println!();
+    }
+    print!("{:34}", "default, agent at the origin");
+    for map in &maps {
+        let views = Views::from_position([0.0; 3], map.points.len())?;
+        row(map, Some(&views), &OutlierConfig::default())?;
+    }
+    println!();
+    Ok(())
+}
+
+/// Our readings, and the default with one part of it taken away; whether they see the observations.
+fn readings() -> Vec<(&'static str, OutlierConfig, bool)> {
     let ranged = |rays: RayConfig| OutlierConfig {
         rays,
         ..OutlierConfig::default()
     };
     let rays = RayConfig::default();
-    let ours = [
+    vec![
         ("D nearest", OutlierConfig::nearest(), true),
         ("F supported", OutlierConfig::supported(), true),
         ("G connected", OutlierConfig::connected(), true),
@@ -94,21 +112,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }),
             true,
         ),
-    ];
-    for (name, config, observed) in ours {
-        print!("{name:34}");
-        for map in &maps {
-            row(map, map.views.as_ref().filter(|_| observed), &config)?;
-        }
-        println!();
-    }
-    print!("{:34}", "default, agent at the origin");
-    for map in &maps {
-        let views = Views::from_position([0.0; 3], map.points.len())?;
-        row(map, Some(&views), &OutlierConfig::default())?;
-    }
-    println!();
-    Ok(())
+    ]
 }
 
 fn row(map: &Labelled, views: Option<&Views>, config: &OutlierConfig) -> Result<(), OutlierError> {
