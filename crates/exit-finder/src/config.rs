@@ -62,17 +62,23 @@ pub struct RangeAware {
     /// Widest opening that is looked for by its range, radians; 60 degrees.
     pub widest: f64,
     /// Smallest ratio of a seen range to the wall that a convex room would have there (the line between
-    /// the jambs or the walls beside them, continued) for it to lie beyond; above 1.
+    /// the jambs or the walls beside them, continued) for it to lie beyond; above 1. Depth noise of far
+    /// walls is some percent.
     pub jump: f64,
     /// Smallest depth behind the line between the jambs, in units of their distance. A room's corner
-    /// has at most ½, an alcove little more.
+    /// has at most ½.
     pub min_depth: f64,
+    /// The same as a share of the median range: less is a niche.
+    pub min_relative_depth: f64,
     /// Votes behind the wall, at least; a bin has a vote per point and up to four.
     pub min_points_beyond: usize,
-    /// Votes behind the wall per bin, as a share of those of a usual bin, at least. Strays are thin.
-    pub min_density: f64,
-    /// Smallest share of the points in the sector that lie behind the wall, in `[0, 1]`.
+    /// Smallest share of the votes in the sector that lie behind the wall, in `[0, 1]`.
     pub min_share_beyond: f64,
+    /// Smallest ratio of the range seen in the sector to the median of its surroundings (±50 degrees).
+    pub min_contrast: f64,
+    /// Smallest probability of an exit ([`crate::ScoreParts`]), in `[0, 1]`. Less finds more doors and more that
+    /// are none.
+    pub min_probability: f64,
     /// Smallest width between the jambs as a share of the median range; rules where the scale is
     /// unknown.
     pub min_relative_width: f64,
@@ -149,13 +155,15 @@ impl Default for RangeAware {
             window: 5f64.to_radians(),
             side: 8f64.to_radians(),
             widest: FRAC_PI_3,
-            jump: 1.3,
-            min_depth: 1.0,
-            min_points_beyond: 6,
-            min_density: 0.1,
-            min_share_beyond: 0.85,
+            jump: 1.15,
+            min_depth: 0.4,
+            min_relative_depth: 0.15,
+            min_points_beyond: 10,
+            min_share_beyond: 0.4,
+            min_contrast: 1.3,
+            min_probability: 0.6,
             min_relative_width: 0.15,
-            max_relative_width: 1.0,
+            max_relative_width: 2.0,
             min_expected: 8.0,
             min_evenness: 0.85,
             unseen: FRAC_PI_2,
@@ -250,7 +258,15 @@ impl RangeAware {
             ),
             ("jump", self.jump, 1.0, f64::MAX, "[1, ∞)"),
             ("min_depth", self.min_depth, 0.0, f64::MAX, "[0, ∞) widths"),
-            ("min_density", self.min_density, 0.0, 1.0, "[0, 1]"),
+            (
+                "min_relative_depth",
+                self.min_relative_depth,
+                0.0,
+                f64::MAX,
+                "[0, ∞)",
+            ),
+            ("min_contrast", self.min_contrast, 0.0, f64::MAX, "[0, ∞)"),
+            ("min_probability", self.min_probability, 0.0, 1.0, "[0, 1]"),
             (
                 "min_share_beyond",
                 self.min_share_beyond,

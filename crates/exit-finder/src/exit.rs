@@ -1,6 +1,7 @@
 //! What a search returns: ranked exits, unseen sectors, and what was turned down and why.
 
 use crate::profile::RangeProfile;
+use crate::rule::ScoreParts;
 use crate::sector::Sector;
 
 /// One way out.
@@ -24,7 +25,8 @@ pub struct Exit {
     pub range: f64,
     /// What gave it away.
     pub kind: ExitKind,
-    /// Rank, higher is better; the product of the parts.
+    /// Rank in `[0, 1]`, higher is better. Range-aware rule: [`ScoreParts::probability`] times how much farther
+    /// one sees there than around. Algorithm 2: the share of the circle.
     pub score: f64,
     /// Where the score comes from.
     pub parts: ScoreParts,
@@ -37,18 +39,6 @@ pub enum ExitKind {
     Empty,
     /// What was seen lies well behind the continued wall.
     RangeJump,
-}
-
-/// The factors of the score, each in `[0, 1]`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScoreParts {
-    /// How far behind the wall the points lie: `1 − wall / seen`. Empty sectors: 0.5.
-    pub jump: f64,
-    /// How well the evidence is supported: `1 − exp(−points / 8)`, for an empty sector with the points
-    /// a wall would have shown.
-    pub support: f64,
-    /// How passable: `w / (w + ½ needed width)`.
-    pub width: f64,
 }
 
 /// A sector that looked like an exit and was turned down.

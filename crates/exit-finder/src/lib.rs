@@ -20,13 +20,13 @@ pub use config::{
     ExitConfig, GapTopology, HeightBand, Numbering, PaperReading, RangeAware, RangeFrom, Rule,
 };
 pub use error::{ExitError, PlaneError};
-pub use exit::{Exit, ExitKind, ExitReport, Rejected, Rejection, ScoreParts};
+pub use exit::{Exit, ExitKind, ExitReport, Rejected, Rejection};
 pub use finder::find_exits;
 pub use passage::{BandReading, BandState, Passage, Shape};
 pub use plane::{AffinePlane, BASIS_TOLERANCE, MIN_SPREAD_RATIO};
 pub use plane_fit::PlaneFit;
 pub use points::PointLike;
 pub use profile::{BinStats, LiveProfile, PointCounts, RangeProfile, Strip};
-pub use rule::exits_of_profile;
+pub use rule::{ScoreParts, exits_of_profile};
 pub use sector::Sector;
 pub use view::{ExitView, Gaze};

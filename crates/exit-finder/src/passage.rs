@@ -12,7 +12,7 @@
 use crate::angle::turn;
 use crate::exit::{Exit, ExitReport};
 use crate::points::PointLike;
-use crate::profile::{PointCounts, median};
+use crate::profile::{Edges, PointCounts, median};
 use crate::vector::{is_finite, sub};
 
 /// Points a band needs in the middle of the sector to be called open or closed.
@@ -107,15 +107,19 @@ impl Exit {
             [q[0] - origin[0], q[1] - origin[1]],
         );
         let mut ignored = PointCounts::default();
+        let edges = Edges::new(report.profile.bins.len());
         let mut seen = Vec::new();
         for &point in points {
             let point: [f64; 3] = point.into();
-            let Some(polar) = eye.look(point, &mut ignored).filter(|_| is_finite(point)) else {
+            let Some(polar) = eye
+                .look(point, &edges, &mut ignored)
+                .filter(|_| is_finite(point))
+            else {
                 continue;
             };
+            let [cos, sin] = polar.offset.map(|x| x / polar.range);
             // The outer tenths may still show the jambs.
-            if turn(self.bearing_rad, polar.bearing).abs() < 0.4 * self.width_rad {
-                let (sin, cos) = polar.bearing.sin_cos();
+            if turn(self.bearing_rad, sin.atan2(cos)).abs() < 0.4 * self.width_rad {
                 let wall = chord.map_or(1.0 / self.range, |line| line.inverse_range([cos, sin]));
                 let lean = strip.tilt[0] * cos + strip.tilt[1] * sin;
                 seen.push((

@@ -33,8 +33,10 @@ pub(crate) struct Run {
 }
 
 impl Run {
+    /// The bins in order; `start` below `n`, `len` at most `n`. Two ranges are faster than a remainder a bin.
     pub(crate) fn bins(self, n: usize) -> impl DoubleEndedIterator<Item = usize> {
-        (self.start..self.start + self.len).map(move |i| i % n)
+        let end = self.start + self.len;
+        (self.start..end.min(n)).chain(0..end.saturating_sub(n))
     }
 
     pub(crate) fn sector(self, n: usize) -> Sector {

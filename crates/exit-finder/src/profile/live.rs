@@ -1,19 +1,20 @@
 //! A profile that follows a changing map: an update costs only the changed points.
 
-use std::f64::consts::TAU;
-
-use super::binning::{Eye, check_support, resolve_band};
-use super::statistics::median;
-use super::strip::Strip;
+use super::band::Band;
+use super::binning::check_support;
+use super::edges::Edges;
+use super::polar::{Eye, Polar};
+use super::running_median::RunningMedian;
+use super::samples::Samples;
 use super::{BinStats, PointCounts, RangeProfile};
-use crate::config::{ExitConfig, HeightBand};
+use crate::config::ExitConfig;
 use crate::error::ExitError;
 use crate::plane::AffinePlane;
 
 /// Where a point went, so that it can be taken out again.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
-    Bin { bin: usize, range: f64 },
+    Bin { bin: usize, level: bool, range: f64 },
     NonFinite,
     AtAgent,
     OutsideBand,
@@ -22,19 +23,21 @@ enum Place {
 /// The range profile of a map whose points come, move and go.
 ///
 /// The agent, the plane and the height band stay fixed; the band and its lean are those of the points
-/// given at the start. Insert, remove and move: O(points in the bin) each; the statistics of
+/// given at the start. Insert, remove and move: O(points in the bin + log points) each; the statistics of
 /// untouched bins are kept.
 #[derive(Debug, Clone)]
 pub struct LiveProfile {
     eye: Eye,
+    edges: Edges,
     plane: AffinePlane,
     agent: [f64; 3],
     config: ExitConfig,
-    band: Option<[f64; 2]>,
-    strip: Strip,
-    widening: f64,
-    ranges: Vec<Vec<f64>>,
+    band: Band,
+    /// Bit patterns of the ranges, ascending per bin: all, and those at flying height.
+    seen: Vec<Vec<u64>>,
+    level: Vec<Vec<u64>>,
     stats: Vec<BinStats>,
+    median: RunningMedian,
     counts: PointCounts,
 }
 
@@ -52,35 +55,38 @@ impl LiveProfile {
     ) -> Result<Self, ExitError> {
         config.validate()?;
         let eye = Eye::new(agent, plane)?;
+        let edges = Edges::new(config.bins);
         let mut ignored = PointCounts::default();
-        let polar: Vec<_> = points
-            .iter()
-            .filter_map(|&p| eye.look(p, &mut ignored))
-            .collect();
-        let (strip, widening) = match config.band {
-            HeightBand::Strip(share) => (Strip::of(&polar), share),
-            _ => (Strip::default(), 0.0),
-        };
+        let look = |&point: &[f64; 3]| eye.look(point, &edges, &mut ignored);
+        let sight: Vec<Polar> = points.iter().filter_map(look).collect();
+        let band = Band::of(config.band, &sight, config.bins);
         let mut live = Self {
             eye,
+            edges,
             plane: *plane,
             agent,
             config: *config,
-            band: resolve_band(config.band, &polar),
-            strip,
-            widening,
-            ranges: vec![Vec::new(); config.bins],
+            band,
+            seen: vec![Vec::new(); config.bins],
+            level: vec![Vec::new(); config.bins],
             stats: vec![BinStats::EMPTY; config.bins],
+            median: RunningMedian::default(),
             counts: PointCounts::default(),
         };
         for &point in points {
-            if let Place::Bin { bin, range } = live.place(point) {
-                live.ranges[bin].push(range);
+            let place = live.place(point);
+            if let Place::Bin { bin, level, range } = place {
+                live.seen[bin].push(range.to_bits());
+                if level {
+                    live.level[bin].push(range.to_bits());
+                }
+                live.median.insert(range);
             }
-            live.count(live.place(point), true);
+            live.count(place, true);
         }
         for bin in 0..config.bins {
-            live.ranges[bin].sort_unstable_by(f64::total_cmp);
+            live.seen[bin].sort_unstable();
+            live.level[bin].sort_unstable();
             live.refresh(bin);
         }
         Ok(live)
@@ -90,9 +96,12 @@ impl LiveProfile {
     pub fn insert(&mut self, point: [f64; 3]) {
         let place = self.place(point);
         self.count(place, true);
-        if let Place::Bin { bin, range } = place {
-            let at = self.ranges[bin].partition_point(|&other| other < range);
-            self.ranges[bin].insert(at, range);
+        if let Place::Bin { bin, level, range } = place {
+            for list in self.lists(bin, level) {
+                let at = list.partition_point(|&bits| bits < range.to_bits());
+                list.insert(at, range.to_bits());
+            }
+            self.median.insert(range);
             self.refresh(bin);
         }
     }
@@ -100,12 +109,14 @@ impl LiveProfile {
     /// Takes out a point that was inserted with exactly these coordinates; false when there is none.
     pub fn remove(&mut self, point: [f64; 3]) -> bool {
         let place = self.place(point);
-        if let Place::Bin { bin, range } = place {
-            let at = self.ranges[bin].partition_point(|&other| other < range);
-            if self.ranges[bin].get(at) != Some(&range) {
-                return false;
+        if let Place::Bin { bin, level, range } = place {
+            for list in self.lists(bin, level) {
+                let Ok(at) = list.binary_search(&range.to_bits()) else {
+                    return false;
+                };
+                list.remove(at);
             }
-            self.ranges[bin].remove(at);
+            self.median.remove(range);
             self.refresh(bin);
         }
         self.count(place, false);
@@ -121,55 +132,46 @@ impl LiveProfile {
         found
     }
 
-    /// The profile of the points held now, for [`crate::exits_of_profile`]. O(points + bins).
+    /// The profile of the points held now, for [`crate::exits_of_profile`]. O(bins).
     ///
     /// # Errors
     /// [`ExitError::InsufficientMap`].
     pub fn profile(&self) -> Result<RangeProfile, ExitError> {
         check_support(&self.counts, &self.config)?;
-        let sum: f64 = self
-            .stats
-            .iter()
-            .filter(|s| s.count > 0)
-            .map(|s| s.mean * s.count as f64)
-            .sum();
-        let mut all: Vec<f64> = self.ranges.iter().flatten().copied().collect();
+        let seen = self.stats.iter().filter(|stats| stats.count > 0);
+        let sum: f64 = seen.map(|stats| stats.mean * stats.count as f64).sum();
         let mean_range = sum / self.counts.used.max(1) as f64;
         Ok(RangeProfile {
             plane: self.plane,
             agent: self.agent,
             bins: self.stats.clone(),
+            seen: samples(&self.seen),
+            level: samples(&self.level),
             mean_range,
-            median_range: median(&mut all).unwrap_or(f64::INFINITY),
+            median_range: self.median.median().unwrap_or(f64::INFINITY),
             radius: mean_range,
-            band: self.band,
-            strip: self.strip,
+            band: self.band.heights,
+            strip: self.band.strip,
             counts: self.counts,
         })
     }
 
     fn place(&self, point: [f64; 3]) -> Place {
         let mut skipped = PointCounts::default();
-        let Some(p) = self.eye.look(point, &mut skipped) else {
+        let Some(p) = self.eye.look(point, &self.edges, &mut skipped) else {
             return if skipped.at_agent > 0 {
                 Place::AtAgent
             } else {
                 Place::NonFinite
             };
         };
-        let height = p.height - self.strip.height_at(p.offset, p.range);
-        let widened = self.widening * p.range;
-        if self
-            .band
-            .is_some_and(|[from, to]| height < from.min(-widened) || height > to.max(widened))
-        {
-            return Place::OutsideBand;
-        }
-        let n = self.config.bins;
-        let bin = ((p.bearing / (TAU / n as f64)) as usize).min(n - 1);
-        Place::Bin {
-            bin,
-            range: p.range,
+        match self.band.level_of(&p) {
+            None => Place::OutsideBand,
+            Some(level) => Place::Bin {
+                bin: p.bin as usize,
+                level,
+                range: p.range,
+            },
         }
     }
 
@@ -190,14 +192,27 @@ impl LiveProfile {
         }
     }
 
-    fn refresh(&mut self, bin: usize) {
-        self.stats[bin] = BinStats::of_sorted(&self.ranges[bin], self.config.quantile);
+    /// The lists that hold a point of this bin.
+    fn lists(&mut self, bin: usize, level: bool) -> impl Iterator<Item = &mut Vec<u64>> {
+        let level = level.then_some(&mut self.level[bin]);
+        std::iter::once(&mut self.seen[bin]).chain(level)
     }
+
+    fn refresh(&mut self, bin: usize) {
+        self.stats[bin] = BinStats::of_sorted(&self.seen[bin], self.config.quantile);
+    }
+}
+
+fn samples(lists: &[Vec<u64>]) -> Samples {
+    let mut samples = Samples::with_capacity(lists.len());
+    lists.iter().for_each(|list| samples.push_sorted(list));
+    samples
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::HeightBand;
 
     fn cloud(n: u32) -> Vec<[f64; 3]> {
         (0..n)
@@ -237,6 +252,7 @@ mod tests {
         let rebuilt = RangeProfile::of_points(&now, &[], [0.0; 3], &plane, &config).unwrap();
         let updated = live.profile().unwrap();
         assert_eq!(updated.bins, rebuilt.bins);
+        assert_eq!((updated.seen, updated.level), (rebuilt.seen, rebuilt.level));
         assert_eq!(updated.counts, rebuilt.counts);
         assert_eq!(updated.median_range, rebuilt.median_range);
         assert!((updated.mean_range - rebuilt.mean_range).abs() < 1e-9);

@@ -3,13 +3,21 @@
 //! Bins are half-open, `[i·2π/n, (i+1)·2π/n)`, numbered from 0 at the plane's first axis, and they
 //! close into a circle.
 
+mod band;
 mod binning;
+mod cells;
+mod edges;
 mod live;
+mod polar;
+mod running_median;
+mod samples;
 mod statistics;
 mod strip;
 
-pub(crate) use binning::Eye;
+pub(crate) use edges::Edges;
 pub use live::LiveProfile;
+pub(crate) use polar::Eye;
+pub(crate) use samples::Samples;
 pub use statistics::BinStats;
 pub(crate) use statistics::median;
 pub use strip::Strip;
@@ -29,6 +37,10 @@ pub struct RangeProfile {
     pub agent: [f64; 3],
     /// One entry per bin, `bins[0]` starts at bearing 0.
     pub bins: Vec<BinStats>,
+    /// Ranges of the points in each bin.
+    pub(crate) seen: Samples,
+    /// Those at flying height: where the band widens with range, the points before it widened.
+    pub(crate) level: Samples,
     /// Mean range of all points in the profile, virtual ones left out, map units.
     pub mean_range: f64,
     /// Lower median of the same ranges, map units.

@@ -1,4 +1,7 @@
 //! Count, mean, median, minimum and a low quantile of the ranges in one bin.
+//!
+//! Ranges are positive, so their bit patterns are ordered as they are and are sorted as integers.
+//! Sums run over fixed point, which is associative: no result depends on the order of the points.
 
 /// Statistics of one bin. An empty bin has count 0 and infinite ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,20 +27,41 @@ impl BinStats {
         quantile: f64::INFINITY,
     };
 
-    /// Statistics of the ascending ranges of one bin. O(n).
-    pub(crate) fn of_sorted(ranges: &[f64], quantile: f64) -> Self {
+    /// Statistics of the ascending ranges of one bin, given as bit patterns. O(n).
+    pub(crate) fn of_sorted(ranges: &[u64], quantile: f64) -> Self {
         let Some(last) = ranges.len().checked_sub(1) else {
             return Self::EMPTY;
         };
-        let rank = (last as f64 * quantile) as usize;
+        let rank = ((last as f64 * quantile) as usize).min(last);
         Self {
             count: ranges.len(),
-            mean: ranges.iter().sum::<f64>() / ranges.len() as f64,
-            median: ranges[last / 2],
-            min: ranges[0],
-            quantile: ranges[rank.min(last)],
+            mean: mean(ranges),
+            median: f64::from_bits(ranges[last / 2]),
+            min: f64::from_bits(ranges[0]),
+            quantile: f64::from_bits(ranges[rank]),
         }
     }
+}
+
+/// Mean of positive numbers given as bit patterns, in fixed point of 2⁻⁴⁰ of the largest.
+pub(crate) fn mean(ranges: &[u64]) -> f64 {
+    const EXPONENT: u64 = 0x7ff << 52;
+    let largest = ranges.iter().copied().max().unwrap_or(0);
+    // Below this size, 10⁻²⁷⁰, the inverse would overflow.
+    let power = f64::from_bits((largest & EXPONENT).max(0x080 << 52));
+    let unit = power * (-40f64).exp2();
+    let inverse = 1.0 / unit;
+    let sum: u128 = ranges
+        .iter()
+        .map(|&bits| u128::from((f64::from_bits(bits) * inverse) as u64))
+        .sum();
+    sum as f64 * unit / ranges.len().max(1) as f64
+}
+
+/// Lower median of positive numbers given as bit patterns, reordering them; `None` for none. O(n).
+pub(crate) fn median_of_bits(values: &mut [u64]) -> Option<f64> {
+    let middle = values.len().checked_sub(1)? / 2;
+    Some(f64::from_bits(*values.select_nth_unstable(middle).1))
 }
 
 /// Lower median of any numbers, reordering them; `None` for none. O(n).
@@ -50,13 +74,25 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
 mod tests {
     use super::*;
 
+    fn of(values: &[f64], quantile: f64) -> BinStats {
+        let mut bits: Vec<u64> = values.iter().map(|v| v.to_bits()).collect();
+        bits.sort_unstable();
+        BinStats::of_sorted(&bits, quantile)
+    }
+
     #[test]
     fn statistics_of_a_short_list() {
-        let stats = BinStats::of_sorted(&[1.0, 2.0, 3.0, 4.0, 5.0], 0.25);
+        let stats = of(&[4.0, 2.0, 5.0, 1.0, 3.0], 0.25);
         assert_eq!((stats.count, stats.mean, stats.median), (5, 3.0, 3.0));
         assert_eq!((stats.min, stats.quantile), (1.0, 2.0));
-        assert_eq!(BinStats::of_sorted(&[], 0.5), BinStats::EMPTY);
-        assert_eq!(BinStats::of_sorted(&[7.0], 1.0).quantile, 7.0);
+        assert_eq!(of(&[], 0.5), BinStats::EMPTY);
+        assert_eq!(of(&[7.0], 1.0).quantile, 7.0);
+    }
+
+    #[test]
+    fn tiny_and_huge_ranges_have_a_mean() {
+        assert!(of(&[1e-300, 2e-300], 0.5).mean.is_finite());
+        assert!((of(&[1e300, 3e300], 0.5).mean / 2e300 - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::binning::Polar;
+use super::polar::Polar;
 
 const SECTORS: usize = 36;
 /// Slopes are counted in cells of less than a degree up to this steepness, steeper ones at the ends.
@@ -43,19 +43,23 @@ impl Strip {
         self.pitch * range + self.tilt[0] * offset[0] + self.tilt[1] * offset[1]
     }
 
-    /// The strip of a cloud; level when there are too few points to tell.
-    pub(crate) fn of(polar: &[Polar]) -> Self {
-        let mut histogram = vec![[0u32; CELLS]; SECTORS];
-        for p in polar {
-            let sector = (p.bearing * (SECTORS as f64 / TAU)) as usize;
+    /// The strip of a cloud seen in `n` bins; level when there are too few points to tell.
+    pub(crate) fn of(points: &[Polar], n: usize) -> Self {
+        let sectors = SECTORS.min(n);
+        let sector_of: Vec<usize> = (0..n).map(|bin| bin * sectors / n).collect();
+        let mut histogram = vec![[0u32; CELLS]; sectors];
+        for p in points {
             let cell = (p.height / p.range / STEEPEST * 0.5 + 0.5) * CELLS as f64;
-            histogram[sector.min(SECTORS - 1)][(cell as usize).min(CELLS - 1)] += 1;
+            histogram[sector_of[p.bin as usize]][(cell as usize).min(CELLS - 1)] += 1;
         }
+        // Where bins do not divide evenly among the sectors, a sector lies where its bins lie.
+        let start = |sector: usize| (sector * n).div_ceil(sectors) as f64 * TAU / n as f64;
         let samples: Vec<(Vector3<f64>, f64)> = histogram
             .iter()
             .enumerate()
             .filter_map(|(sector, cells)| {
-                let (sin, cos) = ((sector as f64 + 0.5) * TAU / SECTORS as f64).sin_cos();
+                let middle = f64::midpoint(start(sector), start(sector + 1));
+                let (sin, cos) = middle.sin_cos();
                 Some((Vector3::new(1.0, cos, sin), median_slope(cells)?))
             })
             .collect();
@@ -119,25 +123,26 @@ mod tests {
             .flat_map(|degrees| {
                 let bearing = f64::from(degrees).to_radians();
                 let slope = -0.1 + 0.2 * bearing.cos() - 0.15 * bearing.sin();
-                (0..9).map(move |k| Polar {
-                    bearing,
+                let point = move |k: u32| Polar {
                     offset: [2.0 * bearing.cos(), 2.0 * bearing.sin()],
                     range: 2.0,
                     height: 2.0 * (slope + 0.1 * (f64::from(k) - 4.0)),
-                })
+                    bin: degrees,
+                };
+                (0..9).map(point)
             })
             .collect()
     }
 
     #[test]
     fn a_full_turn_gives_pitch_and_tilt() {
-        let strip = Strip::of(&leaning((0..360).step_by(3)));
+        let strip = Strip::of(&leaning((0..360).step_by(3)), 360);
         assert!((strip.pitch + 0.1).abs() < 0.02, "{strip:?}");
         assert!((strip.tilt[0] - 0.2).abs() < 0.02 && (strip.tilt[1] + 0.15).abs() < 0.02);
     }
 
     #[test]
     fn nothing_seen_is_level() {
-        assert_eq!(Strip::of(&[]), Strip::default());
+        assert_eq!(Strip::of(&[], 360), Strip::default());
     }
 }

@@ -17,8 +17,8 @@ pub(super) struct Contour {
     /// Robust range of the wall in the `side` bins from bin i on, and the bin where it lies.
     pieces: Vec<Option<(usize, f64)>>,
     /// The wall that ends before bin i, and the wall that starts at bin i, as fitted lines.
-    ending: Vec<Vec<Line>>,
-    starting: Vec<Vec<Line>>,
+    ending: Vec<Option<[Line; 2]>>,
+    starting: Vec<Option<[Line; 2]>>,
     side: usize,
 }
 
@@ -63,6 +63,13 @@ impl Contour {
         self.directions[bin % self.n()]
     }
 
+    /// Median range of the known bins of a run, or `None`.
+    pub(super) fn median_range(&self, start: usize, len: usize) -> Option<f64> {
+        let n = self.n();
+        let known = (start..start + len).filter_map(|bin| self.ranges[bin % n]);
+        median(&mut known.collect::<Vec<f64>>())
+    }
+
     /// Ranges of the wall just outside a run, at its start and at its end; where one side was not
     /// seen, that of the other.
     pub(super) fn jamb_ranges(&self, start: usize, len: usize) -> Option<[f64; 2]> {
@@ -74,15 +81,15 @@ impl Contour {
 
     /// The wall that a convex room would have in a run; `None` when the wall on one side was
     /// not seen: half an opening at the border of a scan is not judged.
-    pub(super) fn expectation(&self, start: usize, len: usize) -> Option<Expectation<'_>> {
+    pub(super) fn expectation(&self, start: usize, len: usize) -> Option<Expectation> {
         let n = self.n();
         let first = self.pieces[(start + n - self.side) % n]?.1;
         let last = self.pieces[(start + len) % n]?.1;
         let [p, q] = [(start + n - 1, first), (start + len, last)]
             .map(|(bin, range)| self.direction(bin).map(|x| x * range));
-        let (before, after) = (&self.ending[start % n], &self.starting[(start + len) % n]);
+        let (before, after) = (self.ending[start % n], self.starting[(start + len) % n]);
         let chord = Line::through(p, q)?;
-        let known = !(before.is_empty() && after.is_empty());
+        let known = before.is_some() || after.is_some();
         let width = (p[0] - q[0]).hypot(p[1] - q[1]);
         known.then_some(Expectation {
             chord,
@@ -94,37 +101,48 @@ impl Contour {
 }
 
 /// Bounds of the wall in a run.
-pub(super) struct Expectation<'a> {
+pub(super) struct Expectation {
     /// The straight line between the jambs.
     pub(super) chord: Line,
     /// Distance between the jambs.
     pub(super) width: f64,
-    before: &'a [Line],
-    after: &'a [Line],
+    before: Option<[Line; 2]>,
+    after: Option<[Line; 2]>,
 }
 
-impl Expectation<'_> {
+impl Expectation {
+    /// Inverse of the range that lies behind the line between the jambs and behind the walls on both sides,
+    /// continued; zero or less where one of them is never met.
+    pub(super) fn inverse_farther(&self, direction: [f64; 2]) -> f64 {
+        let sides = [self.before, self.after].into_iter().flatten();
+        sides
+            .map(|lines| inverse_of_side(&lines, direction))
+            .fold(self.chord.inverse_range(direction), f64::min)
+    }
+
     /// Inverse of the farthest range at which a convex room's wall could be seen in a direction.
     pub(super) fn inverse_range(&self, direction: [f64; 2]) -> f64 {
-        let continued = |lines: &[Line]| {
-            lines
-                .iter()
-                .map(|line| line.inverse_range(direction))
-                .fold(f64::INFINITY, f64::min)
-        };
-        let sides = [self.before, self.after].map(continued);
+        let sides = [self.before, self.after].into_iter().flatten();
         let nearer = sides
-            .into_iter()
-            .filter(|u| u.is_finite())
+            .map(|lines| inverse_of_side(&lines, direction))
             .fold(0.0, f64::max);
         nearer.min(self.chord.inverse_range(direction))
     }
 }
 
-/// The lines through the nearest piece of a wall and each of the next two.
-fn lines([near, middle, far]: [Option<[f64; 2]>; 3]) -> Vec<Line> {
+/// Of the two readings of a wall, the farther one.
+fn inverse_of_side(lines: &[Line; 2], direction: [f64; 2]) -> f64 {
+    lines[0]
+        .inverse_range(direction)
+        .min(lines[1].inverse_range(direction))
+}
+
+/// The lines through the nearest piece of a wall and each of the next two; the same twice where only one is
+/// known.
+fn lines([near, middle, far]: [Option<[f64; 2]>; 3]) -> Option<[Line; 2]> {
     let to = |other: Option<[f64; 2]>| near.zip(other).and_then(|(p, q)| Line::through(p, q));
-    to(middle).into_iter().chain(to(far)).collect()
+    let (first, second) = (to(middle), to(far));
+    Some([first.or(second)?, second.or(first)?])
 }
 
 /// Median range of the known bins among `side` from `start` on, at the middle one of them.

@@ -14,8 +14,8 @@ impl Line {
     /// The line through two points in plan; `None` when they and the agent are in line.
     pub(crate) fn through(p: [f64; 2], q: [f64; 2]) -> Option<Self> {
         let area = p[0] * q[1] - p[1] * q[0];
-        let size = p[0].hypot(p[1]) * q[0].hypot(q[1]);
-        (area.abs() > 1e-9 * size).then(|| Self {
+        let squares = (p[0] * p[0] + p[1] * p[1]) * (q[0] * q[0] + q[1] * q[1]);
+        (area * area > 1e-18 * squares).then(|| Self {
             a: (q[1] - p[1]) / area,
             b: (p[0] - q[0]) / area,
         })
@@ -26,9 +26,14 @@ impl Line {
         self.a * direction[0] + self.b * direction[1]
     }
 
-    /// Distance of a point from the line, positive on the side away from the agent.
-    pub(crate) fn distance_behind(&self, p: [f64; 2]) -> f64 {
-        (self.inverse_range(p) - 1.0) / self.a.hypot(self.b)
+    /// Distance from the agent.
+    pub(crate) fn distance(&self) -> f64 {
+        1.0 / self.a.hypot(self.b)
+    }
+
+    /// How far behind the line a point lies, in units of [`Self::distance`]; negative before it.
+    pub(crate) fn share_behind(&self, p: [f64; 2]) -> f64 {
+        self.inverse_range(p) - 1.0
     }
 }
 
@@ -44,7 +49,8 @@ mod tests {
             assert!((line.inverse_range([cos, sin]) - sin / 2.0).abs() < 1e-12);
         }
         assert!(line.inverse_range([0.0, -1.0]) < 0.0);
-        assert!((line.distance_behind([7.0, 5.0]) - 3.0).abs() < 1e-12);
+        assert!((line.distance() - 2.0).abs() < 1e-12);
+        assert!((line.share_behind([7.0, 5.0]) - 1.5).abs() < 1e-12);
         assert_eq!(Line::through([1.0, 1.0], [2.0, 2.0]), None);
     }
 }

@@ -1,6 +1,8 @@
 //! The rules that tell an opening from a wall, on the finished profile.
 
 mod contour;
+mod evidence;
+pub use evidence::ScoreParts;
 mod line;
 pub(crate) use line::Line;
 mod matched;

@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::config::{ExitConfig, GapTopology, Numbering, PaperReading};
-use crate::exit::{Exit, ExitKind, ExitReport, Rejected, Rejection, ScoreParts};
+use crate::exit::{Exit, ExitKind, ExitReport, Rejected, Rejection};
 use crate::profile::RangeProfile;
+use crate::rule::ScoreParts;
 use crate::sector::{Run, circular_runs, linear_runs};
 use crate::vector::distance;
 
@@ -89,10 +90,6 @@ fn exit_of(profile: &RangeProfile, run: Run) -> Exit {
         range: profile.radius,
         kind: ExitKind::Empty,
         score,
-        parts: ScoreParts {
-            jump: 1.0,
-            support: 1.0,
-            width: score,
-        },
+        parts: ScoreParts::default(),
     }
 }

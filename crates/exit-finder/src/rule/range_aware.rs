@@ -8,10 +8,11 @@
 //! 5. Turn down what is too narrow.
 
 use super::contour::Contour;
+use super::evidence::ScoreParts;
 use super::matched;
 use super::unseen::{points_elsewhere, unseen_bins};
 use crate::config::{ExitConfig, RangeAware};
-use crate::exit::{Exit, ExitKind, ExitReport, Rejected, Rejection, ScoreParts};
+use crate::exit::{Exit, ExitKind, ExitReport, Rejected, Rejection};
 use crate::profile::RangeProfile;
 use crate::sector::{Run, circular_runs};
 use crate::vector::distance;
@@ -97,8 +98,7 @@ impl<'a> Scene<'a> {
             self.needed,
         );
         let judge = |found: matched::Match| {
-            let parts = self.parts(found.jump, found.beyond as f64, found.width);
-            let exit = self.exit_of(found.run, ExitKind::RangeJump, parts);
+            let exit = self.exit_of(found.run, ExitKind::RangeJump, found.evidence.parts());
             (found.run, self.wide_enough(exit, found.width))
         };
         found.into_iter().map(judge).collect()
@@ -140,7 +140,10 @@ impl<'a> Scene<'a> {
         }
         let [a, b] = self.jambs(run);
         let width = distance(a, b);
-        let exit = self.exit_of(run, ExitKind::Empty, self.parts(GAP_JUMP, expected, width));
+        let support = 1.0 - (-expected / 8.0).exp();
+        let passable = width / (width + 0.5 * self.needed).max(f64::MIN_POSITIVE);
+        let parts = ScoreParts::of_support(GAP * support * passable);
+        let exit = self.exit_of(run, ExitKind::Empty, parts);
         self.wide_enough(exit, width)
     }
 
@@ -154,20 +157,15 @@ impl<'a> Scene<'a> {
         Ok(exit)
     }
 
-    fn parts(&self, jump: f64, points: f64, width: f64) -> ScoreParts {
-        let support = 1.0 - (-points / 8.0).exp();
-        ScoreParts {
-            jump,
-            support,
-            width: width / (width + 0.5 * self.needed).max(1e-300),
-        }
-    }
-
     fn exit_of(&self, run: Run, kind: ExitKind, parts: ScoreParts) -> Exit {
         let profile = self.profile;
         let sector = run.sector(self.n());
         let jambs = self.jambs(run);
         let bearing_rad = sector.middle_rad();
+        let score = match kind {
+            ExitKind::RangeJump => parts.score(),
+            ExitKind::Empty => GAP_RANK * parts.probability(),
+        };
         let [before, after] = jambs.map(|jamb| distance(jamb, profile.agent));
         let range = before.min(after) * (1.0 + self.rule.beyond);
         Exit {
@@ -180,7 +178,7 @@ impl<'a> Scene<'a> {
             jambs,
             range,
             kind,
-            score: parts.jump * parts.support * parts.width,
+            score,
             parts,
         }
     }
@@ -198,5 +196,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// An empty run says that the wall is missing, not how far one could see.
-const GAP_JUMP: f64 = 0.5;
+/// Probability of the best gap: an empty run says that the wall is missing, not how far one could see.
+const GAP: f64 = 0.6;
+/// Rank of a gap: as if one saw half as far again as around.
+const GAP_RANK: f64 = 1.0 / 3.0;

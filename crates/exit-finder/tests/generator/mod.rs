@@ -34,10 +34,15 @@ pub struct Scan {
 pub struct Opening {
     pub start: f64,
     pub width: f64,
-    /// Wide enough and unhidden: must be found. Otherwise finding it is neither right nor wrong.
+    /// At least 10 degrees and half a metre wide as seen, and not hidden by furniture: must be found. Otherwise
+    /// finding it is neither right nor wrong.
     pub fair: bool,
     /// Whether features beyond were there to be seen.
     pub seen_through: bool,
+    /// Map points of what lies at least half a metre behind the wall, seen through this opening.
+    pub behind: usize,
+    /// Mean distance of those points behind the wall, metres.
+    pub depth: f64,
 }
 
 /// Builds a plan with `doors` doors, scans it and moves it into an arbitrary map frame.
@@ -52,7 +57,7 @@ pub fn scan(doors: usize, dark: bool, rng: &mut Pcg64) -> Scan {
         let turned = [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1], p[2]];
         std::array::from_fn(|i| scale * turned[i] + shift[i])
     };
-    let openings = plan.openings(yaw);
+    let openings = plan.openings(yaw, &points);
     let agent = to_map([plan.agent[0], plan.agent[1], camera::HEIGHT]);
     Scan {
         points: points.into_iter().map(to_map).collect(),

@@ -229,8 +229,22 @@ impl Plan {
         }
     }
 
+    /// How far behind the room's wall the points in a sector lie, those from half a metre on.
+    fn depths_behind(&self, points: &[[f64; 3]], start: f64, width: f64) -> Vec<f64> {
+        let within = |p: &&[f64; 3]| {
+            let bearing = (p[1] - self.agent[1]).atan2(p[0] - self.agent[0]);
+            (bearing - start).rem_euclid(std::f64::consts::TAU) < width
+        };
+        let outside = |p: &[f64; 3]| {
+            let beyond = |i: usize| (-p[i]).max(p[i] - self.size[i]);
+            beyond(0).max(beyond(1))
+        };
+        let depths = points.iter().filter(within).map(outside);
+        depths.filter(|&depth| depth > 0.5).collect()
+    }
+
     /// The doors as seen from the agent after turning the world by `yaw`.
-    pub fn openings(&self, yaw: f64) -> Vec<Opening> {
+    pub fn openings(&self, yaw: f64, points: &[[f64; 3]]) -> Vec<Opening> {
         let opening = |door: &Door| {
             let [a, b] = door
                 .jambs
@@ -255,7 +269,10 @@ impl Plan {
             // At least 10 degrees and half a metre wide as seen, not behind furniture.
             let fair =
                 clear && width > 10f64.to_radians() && 2.0 * range * (0.5 * width).sin() > 0.5;
+            let depths = self.depths_behind(points, start, width);
             Opening {
+                behind: depths.len(),
+                depth: depths.iter().sum::<f64>() / depths.len().max(1) as f64,
                 start: start + yaw,
                 width,
                 fair,

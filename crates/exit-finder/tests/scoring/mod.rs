@@ -57,7 +57,15 @@ pub struct Score {
     pub best_wrong: usize,
     pub found: usize,
     pub missed: usize,
+    /// Of the fair openings those with [`ENOUGH_POINTS`] at least [`ENOUGH_DEPTH`] behind.
+    pub seen_found: usize,
+    pub seen_missed: usize,
 }
+
+/// Map points behind an opening that make it evident from the map.
+const ENOUGH_POINTS: usize = 20;
+/// Their mean distance behind the wall, metres: more than furniture is deep.
+const ENOUGH_DEPTH: f64 = 1.0;
 
 impl Score {
     pub fn precision(&self) -> f64 {
@@ -66,6 +74,11 @@ impl Score {
 
     pub fn recall(&self) -> f64 {
         share(self.found, self.missed)
+    }
+
+    /// Recall of the openings through which the map shows something.
+    pub fn recall_seen_through(&self) -> f64 {
+        share(self.seen_found, self.seen_missed)
     }
 
     /// Share of rooms with any exit whose best one is right.
@@ -94,6 +107,10 @@ impl Score {
             let found = exits.iter().any(|exit| hits(exit, opening));
             self.found += usize::from(found);
             self.missed += usize::from(!found);
+            if opening.behind >= ENOUGH_POINTS && opening.depth >= ENOUGH_DEPTH {
+                self.seen_found += usize::from(found);
+                self.seen_missed += usize::from(!found);
+            }
         }
     }
 }

@@ -1,0 +1,72 @@
+//! Points as the agent sees them: bin, range and height.
+
+use super::PointCounts;
+use super::edges::Edges;
+use crate::error::ExitError;
+use crate::plane::AffinePlane;
+use crate::vector::is_finite;
+
+/// A point as the agent sees it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Polar {
+    /// Offset from the agent in plane coordinates.
+    pub(crate) offset: [f64; 2],
+    pub(crate) range: f64,
+    /// Above the agent, along the plane's normal.
+    pub(crate) height: f64,
+    pub(crate) bin: u32,
+}
+
+/// The agent as the centre of bearings.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Eye {
+    plane: AffinePlane,
+    centre: [f64; 2],
+    height: f64,
+}
+
+impl Eye {
+    pub(crate) fn new(agent: [f64; 3], plane: &AffinePlane) -> Result<Self, ExitError> {
+        if !is_finite(agent) {
+            return Err(ExitError::Agent { position: agent });
+        }
+        Ok(Self {
+            plane: *plane,
+            centre: plane.project(agent),
+            height: plane.height(agent),
+        })
+    }
+
+    /// Distance of a polar point from the plane's origin, in plane coordinates.
+    pub(crate) fn distance_from_origin(&self, p: &Polar) -> f64 {
+        (self.centre[0] + p.offset[0]).hypot(self.centre[1] + p.offset[1])
+    }
+
+    /// A point in one of the bins; counts it in `counts` when it has no bearing.
+    #[inline]
+    pub(crate) fn look(
+        &self,
+        point: [f64; 3],
+        edges: &Edges,
+        counts: &mut PointCounts,
+    ) -> Option<Polar> {
+        let q = self.plane.project(point);
+        let (dx, dy) = (q[0] - self.centre[0], q[1] - self.centre[1]);
+        let squared = dx * dx + dy * dy;
+        let height = self.plane.height(point) - self.height;
+        if !(squared + height.abs()).is_finite() {
+            counts.non_finite += 1;
+            return None;
+        }
+        if squared <= 0.0 {
+            counts.at_agent += 1;
+            return None;
+        }
+        Some(Polar {
+            offset: [dx, dy],
+            range: squared.sqrt(),
+            height,
+            bin: edges.bin_of([dx, dy]) as u32,
+        })
+    }
+}
