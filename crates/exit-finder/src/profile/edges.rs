@@ -92,7 +92,10 @@ mod tests {
             let bearing = f64::from(i) * TAU / 100_000.0;
             let (sin, cos) = bearing.sin_cos();
             let off = rough_bearing([3.0 * cos, 3.0 * sin]) - wrap(sin.atan2(cos));
-            assert!(off.abs() < 3e-8 || off.abs() > TAU - 1e-6, "{bearing} {off}");
+            assert!(
+                off.abs() < 3e-8 || off.abs() > TAU - 1e-6,
+                "{bearing} {off}"
+            );
         }
     }
 

@@ -70,3 +70,14 @@ pub fn outside(bearing_rad: f64, [low, high]: [f64; 2]) -> f64 {
     let off = (bearing_rad.to_degrees() - middle + 180.0).rem_euclid(360.0) - 180.0;
     (off.abs() - 0.5 * (high - low)).max(0.0)
 }
+
+/// An opening as seen from elsewhere, degrees; its edges are taken to lie `range` from the origin.
+pub fn seen_from(opening: [f64; 2], range: f64, agent: [f64; 3]) -> [f64; 2] {
+    let [low, high] = opening.map(|degrees| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        (range * sin - agent[2])
+            .atan2(range * cos - agent[0])
+            .to_degrees()
+    });
+    [low, if high < low { high + 360.0 } else { high }]
+}
