@@ -209,4 +209,7 @@ fn the_profile_helpers_agree_with_each_other() {
         assert!((reach - stats.mean).abs() < 1e-9);
     }
     assert_eq!(profile.counts.given, scene().len());
+    let held = scene().iter().filter(|&&p| profile.holds(p)).count();
+    assert_eq!(held, profile.counts.used);
+    assert!(!profile.holds([0.4, 0.2, 9.0]));
 }

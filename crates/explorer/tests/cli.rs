@@ -169,6 +169,7 @@ fn exits_finds_the_door() {
     );
     let x = best["direction"][0].as_f64().expect("a number");
     assert!(x > 0.95, "the door lies at +x: {best}");
+    assert_eq!(report["unseen"].as_array().map(Vec::len), Some(0));
 }
 
 #[test]

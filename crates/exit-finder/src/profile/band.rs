@@ -13,7 +13,7 @@ pub(crate) struct Band {
     /// How the band leans.
     pub(crate) strip: Strip,
     /// The band is at least this slope wide.
-    widening: f64,
+    pub(crate) widening: f64,
 }
 
 impl Band {

@@ -71,6 +71,7 @@ impl RangeProfile {
             median_range,
             radius,
             band: band.heights,
+            widening: band.widening,
             strip: band.strip,
             counts,
         })

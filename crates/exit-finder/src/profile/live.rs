@@ -151,6 +151,7 @@ impl LiveProfile {
             median_range: self.median.median().unwrap_or(f64::INFINITY),
             radius: mean_range,
             band: self.band.heights,
+            widening: self.band.widening,
             strip: self.band.strip,
             counts: self.counts,
         })

@@ -50,6 +50,8 @@ pub struct RangeProfile {
     pub radius: f64,
     /// The band that was used, heights above the agent in map units; `None`: all heights.
     pub band: Option<[f64; 2]>,
+    /// The band reaches this slope at least, in either direction.
+    pub(crate) widening: f64,
     /// How the band leans; level unless the band is [`crate::HeightBand::Strip`].
     pub strip: Strip,
     /// What happened to the points.
@@ -104,6 +106,19 @@ impl RangeProfile {
     /// Unit vector of a bearing, world.
     pub fn direction(&self, bearing: f64) -> [f64; 3] {
         self.plane.direction([bearing.cos(), bearing.sin()])
+    }
+
+    /// Whether a point lies in the height band, that is whether it could be part of the profile.
+    pub fn holds(&self, point: [f64; 3]) -> bool {
+        let (q, centre) = (self.plane.project(point), self.plane.project(self.agent));
+        let offset = [q[0] - centre[0], q[1] - centre[1]];
+        let range = offset[0].hypot(offset[1]);
+        let height = self.plane.height(point) - self.plane.height(self.agent);
+        let height = height - self.strip.height_at(offset, range);
+        let widened = self.widening * range;
+        let within =
+            |[from, to]: [f64; 2]| height >= from.min(-widened) && height <= to.max(widened);
+        self.band.is_none_or(within)
     }
 
     /// The end of a bin's spoke at its mean range, as the paper's figure draws it; `None` when the

@@ -7,6 +7,7 @@ use crate::args::{ExitRule, Exits, Output, Vector};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::deliver;
+use crate::planning::RADIUS_M;
 use crate::plot::{Figure, TopView, color, scene};
 
 /// Most exits that the text lists.
@@ -17,8 +18,9 @@ const LISTED: usize = 6;
 pub(crate) struct ExitsReport {
     /// Best first.
     pub(crate) exits: Vec<ExitEntry>,
-    /// Sectors that the camera never looked into, radians about the agent, counter-clockwise from
-    /// above.
+    /// Sectors that the camera never looked into.
+    pub(crate) unseen: Vec<UnseenEntry>,
+    /// How many these are.
     pub(crate) unseen_sectors: usize,
     #[serde(skip)]
     pub(crate) found: Option<ExitReport>,
@@ -41,17 +43,27 @@ pub(crate) struct ExitEntry {
     pub(crate) kind: String,
 }
 
+/// A sector that the camera never looked into, in the map's frame.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct UnseenEntry {
+    /// From the agent through the sector's middle, unit vector.
+    pub(crate) direction: [f64; 3],
+    pub(crate) width_rad: f64,
+}
+
 pub(crate) fn run(arguments: &Exits, output: &Output) -> Result<(), Failure> {
     let loaded = input::load(&arguments.input)?;
     loaded.check_position("--position", arguments.position)?;
     let points = loaded.points.clone();
+    // Without a scale nobody knows what is too narrow: then relative widths decide.
+    let meters = loaded.map.scale.meters_per_unit();
     let report = exits(
         &loaded,
         &points,
         arguments.position,
         arguments.up,
         arguments.rule,
-        None,
+        meters.map(|meters| 2.0 * RADIUS_M / meters),
     )?;
     deliver(output, &report, &text(&report, loaded.unit()), || {
         let subtitle = headline(&report);
@@ -99,8 +111,13 @@ pub(crate) fn exits(
             .to_lowercase(),
     };
     let exits = found.exits.iter().map(entry).collect();
+    let unseen = found.unseen.iter().map(|sector| UnseenEntry {
+        direction: found.profile.direction(sector.middle_rad()),
+        width_rad: sector.width_rad,
+    });
     Ok(ExitsReport {
         exits,
+        unseen: unseen.collect(),
         unseen_sectors: found.unseen.len(),
         found: Some(found),
     })
@@ -120,10 +137,16 @@ fn gazes(loaded: &LoadedMap) -> Vec<Gaze> {
 }
 
 fn headline(report: &ExitsReport) -> String {
-    match report.exits.len() {
+    let exits = match report.exits.len() {
         0 => "no exit: enclosed as far as it was seen".to_owned(),
         1 => "1 exit".to_owned(),
         more => format!("{more} exits"),
+    };
+    let unseen: f64 = report.unseen.iter().map(|sector| sector.width_rad).sum();
+    if unseen > 0.0 {
+        format!("{exits}; {:.0} degrees not looked at", unseen.to_degrees())
+    } else {
+        exits
     }
 }
 
@@ -161,6 +184,7 @@ pub(crate) fn figure(
         .ok_or_else(|| Failure::internal("no profile"))?;
     let view = TopView::new(up, loaded.unit()).map_err(Failure::internal)?;
     let mut layers = scene::banded_cloud(&view, points, &found.profile, color::POINT);
+    layers.insert(0, scene::unseen(&view, found));
     layers.push(scene::spokes(&view, &found.profile));
     layers.extend(scene::exits(&view, found));
     layers.push(scene::agent(&view, found.profile.agent));

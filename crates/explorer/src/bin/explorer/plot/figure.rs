@@ -8,6 +8,8 @@ pub(crate) mod color {
     use super::Color;
 
     pub(crate) const POINT: Color = (52, 86, 122);
+    pub(crate) const OUTSIDE: Color = (198, 206, 216);
+    pub(crate) const UNSEEN: Color = (206, 208, 212);
     pub(crate) const REMOVED: Color = (214, 72, 26);
     pub(crate) const SPOKE: Color = (64, 160, 80);
     pub(crate) const AGENT: Color = (214, 30, 42);

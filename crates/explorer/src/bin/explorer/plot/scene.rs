@@ -46,16 +46,16 @@ pub(crate) fn banded_cloud(
     profile: &RangeProfile,
     tint: Color,
 ) -> Vec<Layer> {
-    let Some([low, high]) = profile.band else {
+    if profile.band.is_none() {
         return vec![cloud("points", tint, view, points)];
-    };
-    let level = profile.plane.height(profile.agent);
-    let in_band = |point: &[f64; 3]| (low..=high).contains(&(profile.plane.height(*point) - level));
-    let (inside, outside): (Vec<[f64; 3]>, Vec<[f64; 3]>) =
-        points.iter().copied().partition(in_band);
+    }
+    let (inside, outside): (Vec<[f64; 3]>, Vec<[f64; 3]>) = points
+        .iter()
+        .copied()
+        .partition(|&point| profile.holds(point));
     vec![
-        cloud("points above and below", tint, view, &outside).opacity(0.2),
-        cloud("points at flying height", tint, view, &inside),
+        cloud("points above and below", color::OUTSIDE, view, &outside).opacity(0.8),
+        cloud("points that count", tint, view, &inside),
     ]
 }
 
@@ -98,10 +98,32 @@ pub(crate) fn spokes(view: &TopView, profile: &RangeProfile) -> Layer {
     Layer::new(
         "mean range per bin",
         color::SPOKE,
-        Shape::Segments { ends, width: 1.3 },
+        Shape::Segments { ends, width: 1.0 },
     )
-    .opacity(0.7)
+    .opacity(0.55)
     .may_leave_frame()
+}
+
+/// Sectors that the camera never looked into, as far as the median range.
+pub(crate) fn unseen(view: &TopView, report: &ExitReport) -> Layer {
+    let profile = &report.profile;
+    let from = view.project(profile.agent);
+    let fan = |sector: &exit_finder::Sector| {
+        let steps = (sector.width_rad / 0.05).ceil().max(1.0);
+        let corner = |step: u32| {
+            let bearing = sector.start_rad + sector.width_rad * f64::from(step) / steps;
+            view.project(profile.at(bearing, profile.median_range))
+        };
+        let rim = (0..=steps as u32).map(corner);
+        core::iter::once(from).chain(rim).collect()
+    };
+    let rings = report.unseen.iter().map(fan).collect();
+    Layer::new(
+        "not looked at",
+        color::UNSEEN,
+        Shape::Polygons { rings, rim: 0.0 },
+    )
+    .opacity(0.5)
 }
 
 /// Exits: translucent sectors up to the jambs, a yellow X behind each; the best one larger.
