@@ -16,7 +16,7 @@ use crate::units::{Battery, Distance, Turn};
 use alloc::boxed::Box;
 use alloc::string::String;
 use core::time::Duration;
-use std::sync::mpsc::{Receiver, Sender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
 /// Events that wait for [`Drone::next_event`] at most.
@@ -35,7 +35,7 @@ pub struct Drone {
 /// Lands a drone from anywhere and ends its connection: what waits on the drone ends with an error, and dropping the
 /// [`Drone`] waits for the landing as always.
 #[derive(Debug, Clone)]
-pub struct Lander(Sender<Message>);
+pub struct Lander(SyncSender<Message>);
 
 impl Lander {
     /// Lands if it may be flying; returns at once.

@@ -8,12 +8,20 @@ use core::net::SocketAddr;
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use std::net::UdpSocket;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Instant;
 
 /// Where the answer to a call goes.
 pub(super) type Answer<T> = Box<dyn FnOnce(T) + Send>;
+
+/// Messages that wait for a session at most. A flood of datagrams beyond is lost, as in a full socket.
+const WAITING: usize = 4096;
+
+/// Hands a datagram over if there is room; false when nobody takes it any more.
+pub(super) fn deliver<M>(outbox: &SyncSender<M>, message: M) -> bool {
+    !matches!(outbox.try_send(message), Err(TrySendError::Disconnected(_)))
+}
 
 /// A session with what surrounds it, without sockets and clock.
 pub(super) trait Engine: Send + 'static {
@@ -36,7 +44,7 @@ pub(super) trait Engine: Send + 'static {
 
 /// The threads of one connection. Dropping it closes the engine and waits for its end.
 pub(super) struct Connection<M> {
-    pub(super) inbox: Sender<M>,
+    pub(super) inbox: SyncSender<M>,
     stop: Arc<AtomicBool>,
     close: fn() -> M,
     threads: Vec<JoinHandle<()>>,
@@ -50,7 +58,7 @@ impl<M: Send + 'static> Connection<M> {
         drone: SocketAddr,
         close: fn() -> M,
     ) -> Result<Self, ConnectError> {
-        let (inbox, messages) = channel();
+        let (inbox, messages) = sync_channel(WAITING);
         let stop = Arc::new(AtomicBool::new(false));
         let ended = Arc::clone(&stop);
         let thread = spawn("tello-session", move || {
@@ -126,7 +134,7 @@ fn run<E: Engine>(
 fn read<M>(
     socket: &UdpSocket,
     stop: &AtomicBool,
-    outbox: &Sender<M>,
+    outbox: &SyncSender<M>,
     message: fn(SocketAddr, Vec<u8>) -> M,
 ) {
     let mut buffer = [0_u8; 2048];
@@ -134,7 +142,7 @@ fn read<M>(
     while !stop.load(Ordering::Relaxed) {
         if let Ok((length, from)) = socket.recv_from(&mut buffer) {
             let bytes = buffer.get(..length).unwrap_or_default().to_vec();
-            if outbox.send(message(from, bytes)).is_err() {
+            if !deliver(outbox, message(from, bytes)) {
                 return;
             }
         }

@@ -1,6 +1,7 @@
 //! Several drones on one port: all of them send their state, and their video, to the same ports of this machine, so one
 //! socket reads a port and gives each datagram to the drone with its source address.
 
+use super::engine::deliver;
 use super::error::ConnectError;
 use super::pilot::Message;
 use alloc::boxed::Box;
@@ -11,7 +12,7 @@ use core::net::{IpAddr, SocketAddr};
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use std::net::UdpSocket;
-use std::sync::mpsc::{Receiver, Sender, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 
@@ -48,10 +49,10 @@ impl StateHub {
     }
 
     /// Sends what comes from this address to a drone; a drone that is gone is forgotten by itself.
-    pub(super) fn register(&self, drone: IpAddr, inbox: Sender<Message>) {
+    pub(super) fn register(&self, drone: IpAddr, inbox: SyncSender<Message>) {
         self.0.register(
             drone,
-            Box::new(move |from, bytes| inbox.send(Message::State(from, bytes.to_vec())).is_ok()),
+            Box::new(move |from, bytes| deliver(&inbox, Message::State(from, bytes.to_vec()))),
         );
     }
 }
@@ -74,10 +75,7 @@ impl VideoHub {
     /// What comes from this address from now on.
     pub(super) fn register(&self, drone: IpAddr) -> Receiver<Vec<u8>> {
         let (outbox, inbox): (SyncSender<Vec<u8>>, _) = sync_channel(WAITING);
-        let take = move |_, bytes: &[u8]| {
-            use std::sync::mpsc::TrySendError::Disconnected;
-            !matches!(outbox.try_send(bytes.to_vec()), Err(Disconnected(_)))
-        };
+        let take = move |_, bytes: &[u8]| deliver(&outbox, bytes.to_vec());
         self.0.register(drone, Box::new(take));
         inbox
     }

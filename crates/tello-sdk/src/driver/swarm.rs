@@ -9,11 +9,15 @@ use std::thread::ScopedJoinHandle;
 /// the order of the drones. A drone whose `fly` panicked has `None`: the others are not disturbed.
 ///
 /// ```no_run
-/// # let (red, blue): (tello_sdk::Drone, tello_sdk::Drone) = todo!();
-/// use tello_sdk::together;
-/// let drones = [&red, &blue];
-/// let up = together(&drones, |drone| drone.take_off());
+/// use std::net::SocketAddr;
+/// use tello_sdk::{Drone, DroneConfig, StateHub, together};
+/// let hub = StateHub::bind(SocketAddr::from(([0, 0, 0, 0], 8890)))?;
+/// let at = |last| DroneConfig::at(SocketAddr::from(([192, 168, 1, last], 8889)));
+/// let red = Drone::connect_through(&hub, at(21))?;
+/// let blue = Drone::connect_through(&hub, at(22))?;
+/// let up = together(&[&red, &blue], Drone::take_off);
 /// assert!(up.iter().all(|result| matches!(result, Some(Ok(())))));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn together<T: Send>(drones: &[&Drone], fly: impl Fn(&Drone) -> T + Sync) -> Vec<Option<T>> {
     let start = Barrier::new(drones.len());

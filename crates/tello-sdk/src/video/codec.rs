@@ -212,6 +212,32 @@ mod tests {
         }
     }
 
+    #[test]
+    fn exact_multiples_are_decoded_too() {
+        let mut camera = TestCard::new();
+        let mut assembler = Assembler::new(AssemblerConfig::default());
+        let mut decoder = Decoder::new().unwrap();
+        let mut frames = Vec::new();
+        for frame in 0..65_u32 {
+            let at = Duration::from_millis(33) * frame;
+            let mut unit = camera.next_unit(at).unwrap();
+            if frame % 2 == 0 {
+                crate::emulator::pad_to_multiple(&mut unit);
+            }
+            for datagram in datagrams(&unit) {
+                let units = assembler.push(at, datagram).into_iter().flatten();
+                let cards = units.filter_map(|unit| decoder.decode(&unit)?.card());
+                frames.extend(cards.map(|card| card.frame));
+            }
+        }
+        let end = assembler.handle_timeout(Duration::from_secs(5));
+        frames.extend(
+            end.and_then(|unit| decoder.decode(&unit)?.card())
+                .map(|card| card.frame),
+        );
+        assert_eq!(frames, (0..65).collect::<Vec<u32>>());
+    }
+
     /// The oracle for our own encoder: another's decoder gives back every plane to the byte.
     #[test]
     fn random_mosaics_are_decoded_exactly() {
