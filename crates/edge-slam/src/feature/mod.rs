@@ -1,10 +1,11 @@
-//! Point features: FAST corners, orientation, rotated BRIEF, ORB over a pyramid, and matching.
+//! Point features: FAST corners, orientation, rotated BRIEF, ORB over a pyramid, matching, and KLT tracking.
 
 mod balance;
 mod brief;
 mod config;
 mod fast;
 mod harris;
+mod klt;
 mod matching;
 mod orb;
 mod orientation;
@@ -14,6 +15,7 @@ pub use balance::balanced_corners;
 pub use brief::Descriptor;
 pub use config::{OrbConfig, OrbConfigError, Selection};
 pub use fast::{Corner, fast_corners};
+pub use klt::{KltConfig, klt_pyramid, track_points};
 pub use matching::{GuidedConfig, Match, MatchConfig, Prediction, match_descriptors, match_guided};
 pub use orb::{Features, Keypoint, OrbExtractor};
 pub use spread::spread_corners;

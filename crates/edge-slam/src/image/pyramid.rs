@@ -62,6 +62,13 @@ impl Pyramid {
         let [sx, sy] = self.scales[level.min(self.scales.len() - 1)];
         [(x + 0.5) * sx - 0.5, (y + 0.5) * sy - 0.5]
     }
+
+    /// A place of the full image, in pixels of a level. Levels past the last count as the last.
+    #[must_use]
+    pub fn from_full(&self, level: usize, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [sx, sy] = self.scales[level.min(self.scales.len() - 1)];
+        [(x + 0.5) / sx - 0.5, (y + 0.5) / sy - 0.5]
+    }
 }
 
 #[cfg(test)]
