@@ -1,50 +1,115 @@
-//! Problem: which points of a sparse map are wrong? Five ways to tell, judged by the truth that only a simulator has.
+//! Problem: which points of a sparse map are wrong? Every way to tell, at its fixed default setting.
 //!
-//! Run: `cargo run --release -p examples --example compare_outlier_removal [WORLD] [SEED]`
-//! Turns a simulated drone once round, takes the map of its SLAM, and prints precision, recall and F1 of what each way removes.
+//! Run: `cargo run --release -p examples --example compare_outlier_removal [MAP | WORLD [SEED]]`
+//! With a map (a folder with map.ply, keyframes.csv, observations.csv(.gz), or a file of points) prints what each way
+//! removes, and if depth_check.csv lies beside it how right that is: a point is wrong if a depth sensor disagrees by more
+//! than 20 %. With a world turns a simulated drone once round and takes the map of its SLAM, whose truth is known.
 
 #![allow(clippy::print_stdout, reason = "an example speaks to the terminal")]
 
 use core::time::Duration;
 use std::collections::HashMap;
 use std::error::Error;
+use std::path::Path;
 
 use indoor_sim::{SimConfig, Simulator, World};
-use slam_bridge::{Map, SlamSource};
+use slam_bridge::{Map, PointId, SlamSource, read_map};
 use submodular_minimax::baseline::{dbscan, lof, radius, statistical};
 use submodular_minimax::{OutlierConfig, Views, remove_outliers};
 use tello_sdk::{Command, Distance, Turn};
+
+/// What is known of each point: wrong, right, or nothing.
+type Truth = Vec<Option<bool>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "apartment".to_owned());
     let seed: u64 = arguments.next().map_or(Ok(1), |word| word.parse())?;
-    let mut sim = Simulator::new(World::named(&name, seed)?, SimConfig::default(), seed)?;
+    let path = Path::new(&name);
+    let (map, truth) = if path.exists() {
+        let map = read_map(path)?;
+        let truth = depth_labels(&map, &path.join("depth_check.csv"))?;
+        (map, truth)
+    } else {
+        simulated(&name, seed)?
+    };
+    let points = map.positions();
+    let count = |kind: bool| truth.iter().filter(|t| **t == Some(kind)).count();
+    let (wrong, right) = (count(true), count(false));
+    println!(
+        "{} points; known to be wrong {wrong}, right {right}",
+        points.len()
+    );
+    println!("method                        removed  precision  recall     F1");
+    if map.has_observations() {
+        let views = views(&map)?;
+        for (name, config) in [
+            ("default", OutlierConfig::default()),
+            ("H, who saw what", OutlierConfig::rays()),
+        ] {
+            let found = remove_outliers(&points, Some(&views), &config)?;
+            row(name, &found.removed, &truth);
+        }
+    }
+    for (name, config) in [
+        ("default, points alone", OutlierConfig::default()),
+        ("G", OutlierConfig::connected()),
+        ("F", OutlierConfig::supported()),
+        ("D", OutlierConfig::nearest()),
+        ("A, the paper's constants", OutlierConfig::paper()),
+    ] {
+        row(
+            name,
+            &remove_outliers(&points, None, &config)?.removed,
+            &truth,
+        );
+    }
+    row(
+        "SOR",
+        &statistical(&points, &Default::default())?.removed,
+        &truth,
+    );
+    row(
+        "ROR",
+        &radius(&points, &Default::default())?.removed,
+        &truth,
+    );
+    row("LOF", &lof(&points, &Default::default())?.removed, &truth);
+    row(
+        "DBSCAN",
+        &dbscan(&points, &Default::default())?.removed,
+        &truth,
+    );
+    Ok(())
+}
+
+/// The map of one turn in a simulated world, and its truth.
+fn simulated(world: &str, seed: u64) -> Result<(Map, Truth), Box<dyn Error>> {
+    let mut sim = Simulator::new(World::named(world, seed)?, SimConfig::default(), seed)?;
     scan(&mut sim)?;
     let map = sim.slam_ref().map();
-    let wrong: Vec<bool> = (map.points.iter())
+    let truth = (map.points.iter())
         .map(|point| sim.slam_ref().point_truth(point.id))
-        .map(|truth| truth.is_some_and(|truth| truth.outlier.is_some()))
+        .map(|truth| Some(truth.is_some_and(|truth| truth.outlier.is_some())))
         .collect();
-    let points = map.positions();
-    let total = wrong.iter().filter(|&&wrong| wrong).count();
-    println!("{} points, {total} of them wrong", points.len());
-    println!("method                        removed  precision  recall     F1");
+    Ok((map, truth))
+}
 
-    let config = OutlierConfig::default();
-    let seen = remove_outliers(&points, Some(&views(&map)?), &config)?;
-    row("submodular, who saw what", &seen.removed, &wrong);
-    let blind = remove_outliers(&points, None, &config)?;
-    row("submodular, points alone", &blind.removed, &wrong);
-    let sor = statistical(&points, &Default::default())?;
-    row("SOR", &sor.removed, &wrong);
-    let ror = radius(&points, &Default::default())?;
-    row("ROR", &ror.removed, &wrong);
-    let lof = lof(&points, &Default::default())?;
-    row("LOF", &lof.removed, &wrong);
-    let clusters = dbscan(&points, &Default::default())?;
-    row("DBSCAN", &clusters.removed, &wrong);
-    Ok(())
+/// point_id, observations with depth, median signed relative depth error; nothing known without the file.
+fn depth_labels(map: &Map, path: &Path) -> Result<Truth, Box<dyn Error>> {
+    let mut wrong = HashMap::new();
+    if path.is_file() {
+        for line in std::fs::read_to_string(path)?.lines().skip(1) {
+            let fields: Vec<&str> = line.split(',').collect();
+            if let [id, _, error] = fields[..] {
+                let error: f64 = error.trim().parse()?;
+                wrong.insert(PointId(id.trim().parse()?), error.abs() > 0.2);
+            }
+        }
+    }
+    Ok((map.points.iter())
+        .map(|point| wrong.get(&point.id).copied())
+        .collect())
 }
 
 /// Takes off and turns once round, going up and down.
@@ -90,11 +155,17 @@ fn views(map: &Map) -> Result<Views, Box<dyn Error>> {
     Ok(Views::new(centers.collect(), observers.collect())?)
 }
 
-fn row(name: &str, removed: &[usize], wrong: &[bool]) {
-    let hits = removed.iter().filter(|&&index| wrong[index]).count() as f64;
-    let precision = hits / removed.len().max(1) as f64;
-    let recall = hits / wrong.iter().filter(|&&wrong| wrong).count().max(1) as f64;
-    let f1 = 2.0 * precision * recall / (precision + recall).max(1e-12);
+fn row(name: &str, removed: &[usize], truth: &Truth) {
+    let found = |kind: bool| removed.iter().filter(|&&i| truth[i] == Some(kind)).count() as f64;
+    let (hits, misses) = (found(true), found(false));
+    let wrong = truth.iter().filter(|t| **t == Some(true)).count() as f64;
+    if wrong == 0.0 {
+        println!("{name:28} {:8}          -       -      -", removed.len());
+        return;
+    }
+    let precision = hits / (hits + misses).max(1.0);
+    let recall = hits / wrong;
+    let f1 = 2.0 * hits / (hits + misses + wrong);
     println!(
         "{name:28} {:8} {precision:10.3} {recall:7.3} {f1:6.3}",
         removed.len()

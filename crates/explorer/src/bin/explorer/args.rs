@@ -143,12 +143,27 @@ pub(crate) struct Clean {
 pub(crate) enum CleanMethod {
     /// Minimax submodular optimisation, recommended setting.
     Submodular,
-    /// The paper's constants, literally: they remove nothing, on any map.
+    /// The paper's constants (reading A), literally: they remove nothing, on any map.
+    #[value(alias = "a")]
     Paper,
+    /// Reading D: near some other point.
+    #[value(alias = "d")]
+    Nearest,
+    /// Reading F: near a point that others support.
+    #[value(alias = "f")]
+    Supported,
+    /// Reading G: F without small detached components.
+    #[value(alias = "g")]
+    Connected,
+    /// Reading H: G, and viewing rays through a point count against it.
+    #[value(alias = "h")]
+    Rays,
     /// Statistical outlier removal.
     Sor,
     /// Radius outlier removal.
     Ror,
+    /// Local outlier factor.
+    Lof,
     /// Density clustering.
     Dbscan,
 }

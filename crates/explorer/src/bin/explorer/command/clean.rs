@@ -83,11 +83,17 @@ fn removal(
     position: Option<Vector>,
 ) -> Result<CleanReport, Failure> {
     let points = &loaded.points;
+    let reading = |config| minimax(loaded, position, &config);
     let baseline = match method {
-        CleanMethod::Submodular => return minimax(loaded, position, &OutlierConfig::default()),
-        CleanMethod::Paper => return minimax(loaded, position, &OutlierConfig::paper()),
+        CleanMethod::Submodular => return reading(OutlierConfig::default()),
+        CleanMethod::Paper => return reading(OutlierConfig::paper()),
+        CleanMethod::Nearest => return reading(OutlierConfig::nearest()),
+        CleanMethod::Supported => return reading(OutlierConfig::supported()),
+        CleanMethod::Connected => return reading(OutlierConfig::connected()),
+        CleanMethod::Rays => return reading(OutlierConfig::rays()),
         CleanMethod::Sor => baseline::statistical(points, &Default::default()),
         CleanMethod::Ror => baseline::radius(points, &Default::default()),
+        CleanMethod::Lof => baseline::lof(points, &Default::default()),
         CleanMethod::Dbscan => baseline::dbscan(points, &Default::default()),
     };
     let removal = baseline.map_err(|error| Failure::new(error, "correct the map"))?;
