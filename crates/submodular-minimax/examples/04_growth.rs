@@ -67,8 +67,9 @@ fn svg(curve: &[(f64, f64)]) -> Result<String, std::fmt::Error> {
             380.0 - 80.0 * (s.log10() + 4.0),
         )
     };
-    let mut text =
-        String::from(r#"<svg xmlns="http://www.w3.org/2000/svg" width="440" height="420">"#);
+    let mut text = String::from(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="440" height="450" viewBox="0 -30 440 450">"#,
+    );
     text += r#"<text x="100" y="412">points, 10³ to 10⁶; seconds, 10⁻⁴ to 10¹</text>"#;
     text += r##"<rect x="40" y="-20" width="360" height="400" fill="none" stroke="#888"/>"##;
     text += r#"<polyline fill="none" stroke="black" points=""#;

@@ -8,8 +8,8 @@ use submodular_minimax::functions::{
     Restriction, Similarity, Sparse, WeightedSum,
 };
 use submodular_minimax::{
-    JointFunction, Split, Subset, assert_jointly_submodular, assert_monotone, assert_normalised,
-    assert_submodular, laws,
+    JointFunction, SetFunction, Split, Subset, assert_jointly_submodular, assert_monotone,
+    assert_normalised, assert_submodular, laws,
 };
 
 fn matrix(rows: usize, columns: usize) -> impl Strategy<Value = Dense> {
@@ -47,8 +47,8 @@ proptest! {
         for mask in 0..32 {
             let set = Subset::from_mask(5, mask);
             let (a, b) = (
-                submodular_minimax::SetFunction::value(&full, &set),
-                submodular_minimax::SetFunction::value(&same, &set),
+                SetFunction::value(&full, &set),
+                SetFunction::value(&same, &set),
             );
             prop_assert!((a - b).abs() < 1e-12, "dense and sparse differ: {a} {b}");
         }
@@ -67,8 +67,8 @@ proptest! {
         let dense = Dense::from_fn(n, n, |u, v| function.similarity().at(u, v)).unwrap();
         let full = Subset::full(n);
         let (a, b) = (
-            submodular_minimax::SetFunction::value(&function, &full),
-            submodular_minimax::SetFunction::value(&FacilityLocation::new(dense), &full),
+            SetFunction::value(&function, &full),
+            SetFunction::value(&FacilityLocation::new(dense), &full),
         );
         prop_assert!((a - b).abs() < 1e-12);
     }
@@ -116,7 +116,7 @@ proptest! {
             for other in 0..16 {
                 let set = Subset::from_mask(4, other);
                 let (a, b) = (
-                    submodular_minimax::SetFunction::value(&modular, &set),
+                    SetFunction::value(&modular, &set),
                     function.value(&set, &x),
                 );
                 prop_assert!((a - b).abs() < 1e-9);
@@ -174,4 +174,37 @@ fn the_literal_score_breaks_the_law() {
         }
     }
     assert!(laws::joint_submodularity(&Literal(literal), 1e-9).is_some());
+}
+
+/// A set function that only counts its members.
+struct OfSize(fn(f64) -> f64);
+
+impl SetFunction for OfSize {
+    fn ground_size(&self) -> usize {
+        4
+    }
+
+    fn value(&self, set: &Subset) -> f64 {
+        (self.0)(set.len() as f64)
+    }
+}
+
+#[test]
+fn every_law_can_fail_and_says_which() {
+    let squared = OfSize(|k| k * k);
+    let found = laws::submodularity(&squared, 1e-9).unwrap();
+    assert_eq!(
+        (found.law, found.left, found.right),
+        ("submodularity", 2.0, 4.0)
+    );
+    let falling = OfSize(|k| -k);
+    let found = laws::monotonicity(&falling, 1e-9).unwrap();
+    assert_eq!(
+        (found.law, found.left, found.right),
+        ("monotonicity", -1.0, 0.0)
+    );
+    let lifted = OfSize(|_| 1.0);
+    let found = laws::normalisation(&lifted, 1e-9).unwrap();
+    assert_eq!((found.law, found.left), ("normalisation", 1.0));
+    assert_eq!(laws::submodularity(&OfSize(f64::sqrt), 1e-9), None);
 }
