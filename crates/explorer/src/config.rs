@@ -13,20 +13,22 @@ pub struct MissionConfig {
     /// Kept free around the body when planning, metres, at least. The points' own noise thickens obstacles by 0.1 to 0.2 m
     /// beyond this: with 0.12 half of the true doorways (0.9 m) close in the simulator, with 0.05 none.
     pub margin_m: f64,
-    /// Kept free around the body where there is room, metres: paths are planned with this first.
+    /// Kept free around the body where there is room, metres: the pose errs by up to 0.1 m where little is in view.
     pub comfortable_margin_m: f64,
     /// Error of the pose at the start of a leg, metres: about 1 % of the median range.
     pub pose_error_m: f64,
     /// How much farther off a leg ends a metre of its length: 3 degrees of heading (two standard deviations).
     pub leg_error: f64,
-    /// Flying height above the ground, metres.
+    /// Flying height above the ground, metres: over tables, under lintels.
     pub flight_height_m: f64,
     /// Space around the start that the operator keeps clear, metres: initialising and the triangle happen in it.
     pub start_bubble_m: f64,
-    /// Stops of a full turn, at least 3. Seven steps of 51 degrees: a 55 degree picture leaves no gap, and each
-    /// command costs about two seconds of battery.
-    pub scan_steps: usize,
-    /// Climb between the stops, centimetres, 20..=500: the paper's "up and down".
+    /// Yaw stick of a full turn, percent, 10..=100: 36 degrees a second on a Tello, whose picture is 55 degrees wide and smears at
+    /// twice that.
+    pub scan_yaw_percent: i64,
+    /// Throttle stick of a full turn, percent, 10..=100: up or down once while a direction is in view.
+    pub scan_throttle_percent: i64,
+    /// How far a full turn goes up and down, centimetres, 20..=500: the paper's "up and down".
     pub scan_climb_cm: i64,
     /// Side of the triangle flown to fit the plane (A, v), centimetres, 20..=500.
     pub triangle_cm: i64,
@@ -36,8 +38,8 @@ pub struct MissionConfig {
     pub longest_leg_m: f64,
     /// Land at this charge wherever the drone is, percent.
     pub battery_floor_percent: u8,
-    /// Charge kept for the way home beyond the floor, percent for each metre of straight distance: a metre costs about three
-    /// seconds at 0.13 percent a second, twice that for detours.
+    /// Charge kept for the way home beyond the floor, percent for each metre of straight distance: a metre costs about five
+    /// seconds at 0.15 percent a second, half as much again for detours.
     pub battery_percent_per_meter_home: f64,
     /// Land after this time.
     pub time_budget: Duration,
@@ -63,6 +65,9 @@ pub struct PerceptionConfig {
     /// Half opening angle of the cone that a matched feature proves free, radians: a 31 pixel ORB patch at f = 920 pixels
     /// covers 15 / 920.
     pub patch_half_angle: f64,
+    /// Widest angle between neighbouring rays whose space between is taken as seen through, radians: above the library's 0.1, since a
+    /// turn on the spot leaves wedges before blank walls unproven from the drone itself outward; hulls keep the body clear all the same.
+    pub max_triangle_angle: f64,
     /// Points to a cluster on average: K = points / this (paper: K is given, the map's size is not).
     pub points_per_cluster: usize,
     /// Clusters longer than this are split, metres, so that no hull bridges a doorway.
@@ -103,18 +108,19 @@ impl Default for MissionConfig {
         Self {
             drone_radius_m: 0.10,
             margin_m: 0.05,
-            comfortable_margin_m: 0.15,
+            comfortable_margin_m: 0.25,
             pose_error_m: 0.02,
             leg_error: 0.06,
-            flight_height_m: 1.0,
+            flight_height_m: 1.3,
             start_bubble_m: 0.6,
-            scan_steps: 7,
+            scan_yaw_percent: 40,
+            scan_throttle_percent: 40,
             scan_climb_cm: 40,
             triangle_cm: 40,
             speed_cm_per_s: 70,
             longest_leg_m: 2.0,
-            battery_floor_percent: 10,
-            battery_percent_per_meter_home: 0.8,
+            battery_floor_percent: 8,
+            battery_percent_per_meter_home: 1.1,
             time_budget: Duration::from_secs(12 * 60),
             scan_budget: 60,
             lost_patience: Duration::from_millis(800),
@@ -131,6 +137,7 @@ impl Default for PerceptionConfig {
             exits: ExitConfig::default(),
             voxel_m: 0.10,
             patch_half_angle: 15.0 / 920.0,
+            max_triangle_angle: 0.15,
             points_per_cluster: 12,
             largest_obstacle_m: 0.6,
         }
@@ -194,7 +201,12 @@ impl MissionConfig {
             "0.3..=10 m",
         )?;
         within("start_bubble_m", self.start_bubble_m, 0.0, 10.0, "0..=10 m")?;
-        within("scan_steps", self.scan_steps as f64, 3.0, 360.0, "3..=360")?;
+        for (field, percent) in [
+            ("scan_yaw_percent", self.scan_yaw_percent),
+            ("scan_throttle_percent", self.scan_throttle_percent),
+        ] {
+            within(field, percent as f64, 10.0, 100.0, "10..=100 %")?;
+        }
         within(
             "scan_climb_cm",
             self.scan_climb_cm as f64,
@@ -248,11 +260,10 @@ impl MissionConfig {
         self.drone_radius_m + self.margin_m
     }
 
-    /// Radii to plan with, metres, the widest first.
+    /// Radius that paths keep free where there is room, metres.
     #[must_use]
-    pub fn planning_radii_m(&self) -> [f64; 3] {
-        let (least, most) = (self.margin_m, self.comfortable_margin_m.max(self.margin_m));
-        [most, 0.5 * (least + most), least].map(|margin| self.drone_radius_m + margin)
+    pub fn comfortable_radius_m(&self) -> f64 {
+        self.drone_radius_m + self.comfortable_margin_m.max(self.margin_m)
     }
 }
 
@@ -265,6 +276,13 @@ impl PerceptionConfig {
             0.0,
             0.2,
             "0..=0.2 rad",
+        )?;
+        within(
+            "max_triangle_angle",
+            self.max_triangle_angle,
+            0.0,
+            1.0,
+            "0..=1 rad",
         )?;
         within(
             "points_per_cluster",

@@ -21,8 +21,8 @@ pub use mission::{
     CommandOutcome, Cycle, Event, Goal, Input, Logged, Mission, MissionRecord, Outcome, Output,
     Scan, TrailPose,
 };
-pub use reach::{Reach, ReachLimits};
-pub use route::Route;
+pub use reach::{Place, Reach, ReachLimits, Room};
+pub use route::{Route, RouteRadii};
 pub use scene::{Presence, Scene, SceneError};
 pub use sight::Sight;
 pub use simulation::{FlightSummary, SimulatedFlight, SimulationError};

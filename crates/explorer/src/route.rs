@@ -1,8 +1,9 @@
 //! A planned and refined path to one reachable place.
 //!
-//! Method: RRT (LaValle 1998, the paper's planner) in the box around the places that the flood reached, then the shortest path in the
-//! visibility DAG of its vertices (the paper's sub-path replacement, done optimally). Where the tree finds nothing within its budget, the flood's
-//! own path, free by construction, is refined instead.
+//! Method: where the flood's way is roomy all along, RRT (LaValle 1998, the paper's planner) in the box around the places that the flood
+//!         reached; where it leads through something narrow, or the tree finds nothing within its budget, the flood's own way, which
+//!         keeps to the middle. Then the shortest path in the visibility DAG of its vertices (the paper's sub-path replacement, done
+//!         optimally), where a shortcut needs as much room as its tighter end has.
 
 use nalgebra::Point3;
 use rand::Rng;
@@ -13,6 +14,9 @@ use crate::reach::Reach;
 use crate::scene::Scene;
 use crate::stage::{Stage, StageObserver, staged};
 
+/// Share of the room at its tighter end that a shortcut keeps all along: with all of it hardly any shortcut past a corner is left.
+const SHORTCUT_ROOM: f64 = 0.75;
+
 /// A path, map units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
@@ -22,6 +26,15 @@ pub struct Route {
     pub path: Vec<[f64; 3]>,
     /// Whether the tree found it; otherwise it is the flood's.
     pub by_tree: bool,
+}
+
+/// Radii of a route, map units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RouteRadii {
+    /// Kept free everywhere.
+    pub least: f64,
+    /// Kept free where there is room.
+    pub comfortable: f64,
 }
 
 impl Route {
@@ -50,34 +63,36 @@ impl Route {
         }
     }
 
-    /// Plans from the flood's start to its place `index` for a ball of the widest of `radii` (map units, descending) that finds
-    /// a way; the flood must have been made with the last of them.
+    /// Plans from the flood's start to its place `index`.
     pub fn plan(
         scene: &Scene,
         reach: &Reach,
         index: usize,
-        radii: &[f64],
+        radii: RouteRadii,
         config: &ExplorationConfig,
         rng: &mut impl Rng,
         stages: &mut dyn StageObserver,
     ) -> Option<Self> {
-        let flooded: Vec<[f64; 3]> = reach.path_to(index).into_iter().map(Into::into).collect();
-        let least = *radii.last()?;
-        let (tree, radius) = staged(stages, Stage::Plan, || {
-            let grown = radii.iter().find_map(|&radius| {
-                let path = grow(scene, reach, &flooded, radius, config, rng)?;
-                Some((Some(path), radius))
-            });
-            grown.unwrap_or((None, least))
+        let way = reach.path_to(index);
+        let narrowest = way
+            .iter()
+            .fold(f64::INFINITY, |least, place| least.min(place.clearance));
+        let flooded: Vec<[f64; 3]> = way.iter().map(|place| place.position.into()).collect();
+        let tree = staged(stages, Stage::Plan, || {
+            (narrowest >= radii.comfortable)
+                .then(|| grow(scene, reach, &flooded, radii.comfortable, config, rng))
+                .flatten()
         });
         let by_tree = tree.is_some();
         let raw = match tree {
             Some(path) => path,
             None => Path::new(&flooded).ok()?,
         };
-        let free =
-            |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
-        let refined = staged(stages, Stage::Refine, || refine::dag(&raw, &free));
+        let refined = staged(stages, Stage::Refine, || {
+            let free =
+                |a: &[f64; 3], b: &[f64; 3]| is_roomy(scene, &(*a).into(), &(*b).into(), radii);
+            refine::dag(&raw, &free)
+        });
         Some(Self {
             raw: raw.into_points(),
             path: refined.path.into_points(),
@@ -86,7 +101,17 @@ impl Route {
     }
 }
 
-/// One tree from the first to the last of the flooded places, for one radius.
+/// Whether the straight way has the room all along that its tighter end has.
+fn is_roomy(scene: &Scene, a: &Point3<f64>, b: &Point3<f64>, radii: RouteRadii) -> bool {
+    if !scene.motion_is_free(a, b, radii.least) {
+        return false;
+    }
+    let room = |place| scene.clearance(place, radii.comfortable);
+    let radius = SHORTCUT_ROOM * room(a).min(room(b));
+    radius <= radii.least || scene.motion_is_free(a, b, radius)
+}
+
+/// One tree from the first to the last of the flooded places.
 fn grow(
     scene: &Scene,
     reach: &Reach,

@@ -21,8 +21,19 @@ use submodular_minimax::{OutlierError, Views, ViewsError, remove_outliers};
 
 use crate::config::{MissionConfig, PerceptionConfig};
 use crate::heading::LevelPose;
+use crate::reach::Room;
 use crate::sight::Sight;
 use crate::stage::{Stage, StageObserver, staged};
+
+/// So many other observers of a point make one keyframe's view of it unnecessary.
+const ENOUGH_WITNESSES: usize = 2;
+/// A keyframe is unnecessary when this share of its points is (ORB-SLAM culls keyframes by a share of 0.9).
+const SPARE_SHARE: f64 = 0.8;
+/// Keyframes look the same way that are this near, metres, and whose axes have this cosine.
+const SAME_VIEW: (f64, f64) = (0.2, 0.94);
+
+/// Halvings when a clearance is searched.
+const CLEARANCE_BITS: u32 = 5;
 
 /// What one look at a map yields. All coordinates in map units.
 #[derive(Debug, Clone)]
@@ -154,14 +165,29 @@ impl Scene {
         space.motion_is_free((*a).into(), (*b).into(), radius)
     }
 
-    /// The radius, map units, to plan with from `start`: `radius`, or less where the drone already is nearer to an obstacle, but
-    /// never less than `least`.
+    /// Radius of the largest free ball around `place`, map units, up to `most`; known to one part in 32 of that. 0 where nothing fits.
     #[must_use]
-    pub fn radius_at(&self, start: &Point3<f64>, radius: f64, least: f64) -> f64 {
-        // A shade under the clearance itself, since contact does not count as free.
-        radius
-            .min(0.98 * self.obstacles.point_clearance((*start).into()))
-            .max(least)
+    pub fn clearance(&self, place: &Point3<f64>, most: f64) -> f64 {
+        let fits = |radius: f64| self.motion_is_free(place, place, radius);
+        if fits(most) {
+            return most;
+        }
+        let (mut low, mut high) = (0.0, most);
+        for _ in 0..CLEARANCE_BITS {
+            let middle = 0.5 * (low + high);
+            if fits(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// Whether the straight line between two places is proven free: what lies there has been seen through.
+    #[must_use]
+    pub fn sees(&self, a: &Point3<f64>, b: &Point3<f64>) -> bool {
+        self.free.motion_is_free((*a).into(), (*b).into(), 0.0)
     }
 
     /// Positions of the points that were kept.
@@ -202,6 +228,16 @@ impl Scene {
             &view,
             &exits,
         )?)
+    }
+}
+
+impl Room for Scene {
+    fn clearance(&self, place: &Point3<f64>, most: f64) -> f64 {
+        Self::clearance(self, place, most)
+    }
+
+    fn motion_is_free(&self, a: &Point3<f64>, b: &Point3<f64>, radius: f64) -> bool {
+        Self::motion_is_free(self, a, b, radius)
     }
 }
 
@@ -268,7 +304,7 @@ fn proven_free(
     config: &MissionConfig,
 ) -> Result<FreeSpace, SceneError> {
     let settings = free_space_config(meters_per_unit, config);
-    let mut free = FreeSpace::from_rays(rays(map, kept), solid, &settings)?;
+    let mut free = FreeSpace::from_rays(rays(map, kept, meters_per_unit), solid, &settings)?;
     for places in presence.chunk_by(|a, b| a.radius == b.radius) {
         let centers: Vec<[f64; 3]> = places.iter().map(|place| place.center).collect();
         free.add_balls(&centers, places.first().map_or(0.0, |place| place.radius))?;
@@ -276,15 +312,47 @@ fn proven_free(
     Ok(free)
 }
 
-/// One ray from every keyframe to every point of `kept` that it sees.
-pub(crate) fn rays(map: &Map, kept: &[usize]) -> Vec<Ray> {
+/// One ray from every keyframe that is needed to every point of `kept` that it sees.
+///
+/// SLAM keeps about ten observers to a point; a proof needs two. A keyframe is left out where an older one is near that looks the same
+/// way and [`ENOUGH_WITNESSES`] others see most of its points as well. Those from elsewhere stay: they prove what lies before blank
+/// walls, which rays from one place alone never cross.
+fn rays(map: &Map, kept: &[usize], meters_per_unit: f64) -> Vec<Ray> {
+    let mut seen: Vec<Vec<usize>> = vec![Vec::new(); map.keyframes.len()];
+    let mut witnesses = vec![0_usize; map.points.len()];
+    for &index in kept {
+        let Some(point) = map.points.get(index) else {
+            continue;
+        };
+        for keyframe in observer_indices(map, &point.observers) {
+            seen[keyframe].push(index);
+            witnesses[index] += 1;
+        }
+    }
     let mut rays = Vec::new();
-    for point in kept.iter().filter_map(|&index| map.points.get(index)) {
-        let end = point.position.into();
-        let observers = point.observers.iter().filter_map(|&id| map.keyframe(id));
-        rays.extend(observers.map(|keyframe| Ray {
-            origin: keyframe.center().into(),
-            end,
+    let mut views: Vec<(Point3<f64>, Vector3<f64>)> = Vec::new();
+    for (keyframe, points) in map.keyframes.iter().zip(&seen) {
+        let (center, forward) = (keyframe.center(), Vector3::from(keyframe.forward()));
+        let spare = points
+            .iter()
+            .filter(|&&index| witnesses[index] > ENOUGH_WITNESSES)
+            .count();
+        let redundant = spare as f64 >= SPARE_SHARE * points.len() as f64
+            && views.iter().any(|(place, axis)| {
+                (place - center).norm() * meters_per_unit < SAME_VIEW.0
+                    && axis.dot(&forward) > SAME_VIEW.1
+            });
+        if redundant {
+            for &index in points {
+                witnesses[index] -= 1;
+            }
+            continue;
+        }
+        views.push((center, forward));
+        let origin = center.into();
+        rays.extend(points.iter().map(|&index| Ray {
+            origin,
+            end: map.points[index].position.into(),
         }));
     }
     rays
@@ -294,6 +362,7 @@ fn free_space_config(meters_per_unit: f64, config: &MissionConfig) -> FreeSpaceC
     FreeSpaceConfig {
         resolution: config.perception.voxel_m,
         patch_half_angle: config.perception.patch_half_angle,
+        max_triangle_angle: config.perception.max_triangle_angle,
         // The hulls keep the body clear of points; asking for more here would close doorways.
         clearance: config.drone_radius_m,
         ..FreeSpaceConfig::default()

@@ -1,4 +1,4 @@
-//! Which place to fly to next: through an exit, nearer to one, to a place that no scan saw, or home.
+//! Which place to fly to next: through an exit, nearer to one, to a place that no scan saw, to the edge of what is proven, or home.
 
 use nalgebra::Point3;
 use sparse_to_obstacles::VoxelState;
@@ -6,7 +6,9 @@ use sparse_to_obstacles::VoxelState;
 use super::context::Context;
 use super::event::Goal;
 use super::fly::Arrival;
+use super::survey::Survey;
 use crate::atlas::PortalState;
+use crate::heading::LevelPose;
 use crate::reach::Reach;
 use crate::scene::Scene;
 
@@ -15,12 +17,20 @@ const DETOUR_M: f64 = 1.0;
 /// Lines of sight that are checked for one goal at most.
 const MOST_VIEWS: usize = 100;
 
-/// A scan is taken to show unseen places within this distance, metres.
-const UNSEEN_RANGE_M: f64 = 1.5;
-/// Flights of this length count half as much as short ones, metres.
-const WORTHWHILE_WAY_M: f64 = 2.0;
-/// Places compared for the next scan at most.
-const MOST_CANDIDATES: usize = 400;
+/// Speed over ground with all turns and looks, metres per second.
+const PROGRESS_M_PER_S: f64 = 0.35;
+/// What a scan takes, seconds.
+const SCAN_S: f64 = 15.0;
+/// Floor area that an open exit promises, square metres: a small room.
+const OPEN_EXIT_M2: f64 = 8.0;
+/// The same for an exit that was seen through but not proven yet, and for one that was not seen through.
+const SEEN_EXIT_M2: f64 = 5.0;
+const UNSEEN_EXIT_M2: f64 = 2.5;
+
+/// How far behind an exit a scan is made, metres, the best first.
+const DEPTHS_M: [f64; 3] = [0.7, 0.35, 0.0];
+/// A scan this near to a site in plain view would show nothing new, metres.
+const NEAR_SITE_M: f64 = 0.8;
 
 /// Where to fly next.
 pub(super) struct Choice {
@@ -30,42 +40,62 @@ pub(super) struct Choice {
     pub(super) arrival: Arrival,
 }
 
-/// What to do next: the exit that is most surely open and nearest, else a place that no site has seen, else nothing.
+/// What to do next: whatever promises most new floor for its time among exits and places that no site has seen; then the edges of
+/// what is proven, then places far from every site; else nothing.
 pub(super) fn next_choice(
     context: &mut Context<'_>,
     scene: &Scene,
     reach: &Reach,
+    pose: &LevelPose,
 ) -> Option<Choice> {
-    let here = reach.position(0)?;
-    let mut best: Option<(usize, f64, Choice)> = None;
+    let mut best: Option<(f64, Choice)> = None;
     for portal in context.atlas.unvisited() {
-        let Some(choice) = portal_choice(context, scene, reach, portal) else {
-            block(context, portal);
-            continue;
-        };
-        let through = context
-            .atlas
-            .portals()
-            .get(portal)
-            .map_or(here, |entry| entry.through);
-        let class = match choice.goal {
-            Goal::Through => 0,
-            _ if scene.free.state(through.into()) == VoxelState::Free => 1,
-            _ => 2,
-        };
-        let distance = reach
-            .position(choice.place)
-            .map_or(f64::INFINITY, |place| (place - here).norm());
-        if best
-            .as_ref()
-            .is_none_or(|(c, d, _)| (class, distance) < (*c, *d))
-        {
-            best = Some((class, distance, choice));
+        match portal_choice(context, scene, reach, portal) {
+            Some(choice) => {
+                let gain = portal_gain(context, scene, portal, choice.goal);
+                keep_better(&mut best, worth(scene, reach, choice.place, gain), choice);
+            }
+            None => block(context, portal),
         }
     }
-    best.map(|(_, _, choice)| choice)
-        .or_else(|| unseen_choice(context, scene, reach))
+    let survey = Survey::new(context.shared, scene, reach, pose);
+    if let Some((area, place)) = survey.unseen() {
+        let choice = Choice {
+            place,
+            goal: Goal::Unseen,
+            arrival: Arrival::Site(None),
+        };
+        keep_better(
+            &mut best,
+            worth(scene, reach, place, area.min(OPEN_EXIT_M2)),
+            choice,
+        );
+    }
+    best.map(|(_, choice)| choice)
+        .or_else(|| survey.edges())
         .or_else(|| far_choice(context, scene, reach))
+}
+
+fn keep_better(best: &mut Option<(f64, Choice)>, worth: f64, choice: Choice) {
+    if best.as_ref().is_none_or(|(most, _)| worth > *most) {
+        *best = Some((worth, choice));
+    }
+}
+
+/// Square metres a second.
+fn worth(scene: &Scene, reach: &Reach, place: usize, gain: f64) -> f64 {
+    let way = reach.place(place).map_or(f64::INFINITY, |place| place.way);
+    gain / (way * scene.meters_per_unit / PROGRESS_M_PER_S + SCAN_S)
+}
+
+fn portal_gain(context: &Context<'_>, scene: &Scene, portal: usize, goal: Goal) -> f64 {
+    let through = context.atlas.portals().get(portal).map(|p| p.through);
+    let seen = through.is_some_and(|place| scene.free.state(place.into()) == VoxelState::Free);
+    match goal {
+        Goal::Through => OPEN_EXIT_M2,
+        _ if seen => SEEN_EXIT_M2,
+        _ => UNSEEN_EXIT_M2,
+    }
 }
 
 /// How to get through a portal or nearer to it; `None` when there is no way and no progress.
@@ -82,7 +112,8 @@ fn portal_choice(
     }
     let (place, left) = nearest_view(scene, reach, &entry.through)?;
     if left < scene.units(exploration.arrival_m) {
-        return Some(Choice {
+        let place = behind(context, scene, reach, portal).unwrap_or(place);
+        return is_fresh(context, scene, reach, place).then_some(Choice {
             place,
             goal: Goal::Through,
             arrival: Arrival::Site(Some(portal)),
@@ -103,10 +134,44 @@ fn portal_choice(
     })
 }
 
+/// Whether a scan here would show something: no site is near in plain view.
+fn is_fresh(context: &Context<'_>, scene: &Scene, reach: &Reach, place: usize) -> bool {
+    let near = scene.units(NEAR_SITE_M);
+    let Some(place) = reach.position(place) else {
+        return false;
+    };
+    let mut sites = context.atlas.sites().iter();
+    !sites.any(|site| (site.position - place).norm() < near && scene.sees(&site.position, &place))
+}
+
+/// The roomiest reached place some way behind a portal, or else at it: from a doorway a scan shows less than from the room.
+fn behind(context: &Context<'_>, scene: &Scene, reach: &Reach, portal: usize) -> Option<usize> {
+    let entry = context.atlas.portals().get(portal)?;
+    let site = context.atlas.sites().get(entry.site)?;
+    let ahead = (entry.through - site.position).try_normalize(f64::EPSILON)?;
+    let arrival = context.config.exploration.arrival_m;
+    DEPTHS_M.into_iter().find_map(|depth| {
+        let target = entry.through + ahead * scene.units(depth);
+        roomiest(scene, reach, &target, arrival)
+    })
+}
+
+/// The reached place within `meters` of `target` that has most room around it: scans are made there.
+fn roomiest(scene: &Scene, reach: &Reach, target: &Point3<f64>, meters: f64) -> Option<usize> {
+    let (place, cost) = reach.best(|place| {
+        if (place.position - target).norm() < scene.units(meters) {
+            -place.clearance
+        } else {
+            f64::INFINITY
+        }
+    })?;
+    cost.is_finite().then_some(place)
+}
+
 /// The reachable place nearest to `target` from which the straight line to it is proven free, and that distance; the nearest place
 /// of all where no such place is at most [`DETOUR_M`] farther. In front of an opening the drone sees through it, beside it the wall.
 fn nearest_view(scene: &Scene, reach: &Reach, target: &Point3<f64>) -> Option<(usize, f64)> {
-    let (nearest, least) = reach.best(|position| (position - target).norm())?;
+    let (nearest, least) = reach.best(|place| (place.position - target).norm())?;
     let limit = least + scene.units(DETOUR_M);
     let mut near: Vec<(usize, f64)> = reach
         .positions()
@@ -119,7 +184,7 @@ fn nearest_view(scene: &Scene, reach: &Reach, target: &Point3<f64>) -> Option<(u
     let sees = |place: usize| {
         reach
             .position(place)
-            .is_some_and(|p| scene.free.motion_is_free(p.into(), (*target).into(), 0.0))
+            .is_some_and(|position| scene.sees(&position, target))
     };
     let view = near
         .iter()
@@ -129,76 +194,25 @@ fn nearest_view(scene: &Scene, reach: &Reach, target: &Point3<f64>) -> Option<(u
     Some(view.unwrap_or((nearest, least)))
 }
 
-/// The reachable place from which a scan would show most that no site saw, for the way there. Each becomes a site of its own, at a
-/// distance from all others, and each is tried once, so there are finitely many.
-fn unseen_choice(context: &Context<'_>, scene: &Scene, reach: &Reach) -> Option<Choice> {
-    let exploration = &context.config.exploration;
-    let shrink = scene.units(exploration.known_shrink_m);
-    let atlas = &context.atlas;
-    // One height is enough to tell places apart, and one place in so many to tell areas apart.
-    let start = reach.position(0)?;
-    let level = 0.5 * scene.free.resolution();
-    let unseen: Vec<(usize, Point3<f64>)> = reach
-        .positions()
-        .enumerate()
-        .filter(|(_, position)| (position - start).dot(&context.knowledge.up()).abs() < level)
-        .filter(|(_, position)| !atlas.is_known(position, shrink))
-        .collect();
-    let apart = scene.units(exploration.site_distance_m);
-    let is_new = |position: &Point3<f64>| {
-        let near_site = atlas
-            .sites()
-            .iter()
-            .any(|site| (site.position - position).norm() < apart);
-        let near_tried = context
-            .tried
-            .iter()
-            .any(|place| (place - position).norm() < 0.5 * apart);
-        !near_site && !near_tried
-    };
-    let range = scene.units(UNSEEN_RANGE_M);
-    let cell = scene.free.resolution() * scene.meters_per_unit;
-    let stride = unseen.len().div_ceil(MOST_CANDIDATES).max(1);
-    let mut best: Option<(usize, f64)> = None;
-    for &(place, position) in unseen
-        .iter()
-        .step_by(stride)
-        .filter(|(_, position)| is_new(position))
-    {
-        let near = unseen
-            .iter()
-            .filter(|(_, other)| (other - position).norm() < range)
-            .count();
-        let area = near as f64 * cell * cell;
-        let way = (position - start).norm() * scene.meters_per_unit;
-        let worth = area / (way + WORTHWHILE_WAY_M);
-        if area >= exploration.least_unseen_m2 && best.is_none_or(|(_, most)| worth > most) {
-            best = Some((place, worth));
-        }
-    }
-    best.map(|(place, _)| Choice {
-        place,
-        goal: Goal::Unseen,
-        arrival: Arrival::Site(None),
-    })
-}
-
-/// A reachable place far from every site: doors that a site saw at a slant, or whose frames were blank, show from another side.
-/// Each becomes a site, so there are finitely many.
+/// A reachable place far from every site: doors that a site saw at a slant, or whose frames were blank, show from another side. What
+/// counts as far grows with the number of scans. Each becomes a site, so there are finitely many.
 fn far_choice(context: &Context<'_>, scene: &Scene, reach: &Reach) -> Option<Choice> {
-    let far = scene.units(context.config.exploration.far_distance_m);
-    let start = reach.position(0)?;
-    let (place, cost) = reach.best(|position| {
+    let shares = [(4, 0.25), (8, 0.5)];
+    let share = shares
+        .into_iter()
+        .find(|&(scans, _)| context.scans.len() < scans)
+        .map_or(1.0, |(_, share)| share);
+    let far = scene.units(share * context.config.exploration.far_distance_m);
+    let (place, cost) = reach.best(|place| {
         let sites = context.atlas.sites().iter().map(|site| site.position);
         let nearest = sites
             .chain(context.tried.iter().copied())
-            .map(|site| (site - position).norm())
+            .map(|site| (site - place.position).norm())
             .fold(f64::INFINITY, f64::min);
-        let way = (position - start).norm() + scene.units(WORTHWHILE_WAY_M);
         if nearest < far {
             f64::INFINITY
         } else {
-            -nearest.min(2.0 * far) / way
+            -(nearest.min(2.0 * far) + place.clearance) / (place.way + scene.units(2.0))
         }
     })?;
     cost.is_finite().then_some(Choice {
@@ -221,7 +235,7 @@ pub(super) fn home_choice(
     reach: &Reach,
     home: &Point3<f64>,
 ) -> Option<Choice> {
-    let (place, left) = reach.best(|position| (position - home).norm())?;
+    let (place, left) = reach.best(|place| (place.position - home).norm())?;
     let near = left < scene.units(context.config.exploration.arrival_m);
     near.then_some(Choice {
         place,

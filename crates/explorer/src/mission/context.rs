@@ -33,6 +33,8 @@ pub(super) struct Shared {
     pub(super) last: Option<Finished>,
     /// Failures of commands in a row.
     pub(super) failures: usize,
+    /// Whether the drone still obeys sticks that are not at rest.
+    pub(super) sticks_held: bool,
     pub(super) scans: Vec<Scan>,
     /// Places that no site had seen and that a flight was planned to, map units.
     pub(super) tried: Vec<Point3<f64>>,
@@ -96,15 +98,25 @@ impl Shared {
     /// Above the place where the drone was first tracked in this epoch, at its present height, map units: in the first epoch, above
     /// the place where it took off.
     pub(super) fn home(&self) -> Option<Point3<f64>> {
-        let (epoch, here) = self.knowledge.tracked_position()?;
-        let first = self
-            .knowledge
-            .trail()
-            .iter()
-            .find(|frame| frame.epoch == epoch)?;
-        let first = Point3::from(first.world_from_camera.translation.vector);
+        let (_, here) = self.knowledge.tracked_position()?;
+        let first = self.first_place()?;
         let up = self.knowledge.up();
         Some(first + up * up.dot(&(here - first)))
+    }
+
+    /// Where the drone was first tracked in this epoch, map units.
+    pub(super) fn first_place(&self) -> Option<Point3<f64>> {
+        let epoch = self.knowledge.epoch();
+        let mut trail = self.knowledge.trail().iter();
+        let first = trail.find(|frame| frame.epoch == epoch)?;
+        Some(Point3::from(first.world_from_camera.translation.vector))
+    }
+
+    /// Where the first scan of this epoch was made, map units.
+    pub(super) fn first_scan(&self) -> Option<Point3<f64>> {
+        let epoch = self.knowledge.epoch();
+        let mut scans = self.scans.iter().filter_map(|scan| scan.position);
+        scans.find(|(of, _)| *of == epoch).map(|(_, place)| place)
     }
 
     /// Charge that the way home costs, percent.

@@ -56,6 +56,8 @@ pub enum Goal {
     Return,
     /// To a reachable place that no scan has seen.
     Unseen,
+    /// To a place from which edges of what is proven free can be looked beyond.
+    Edge,
     /// Back to where the drone took off.
     Home,
 }
@@ -88,6 +90,7 @@ impl fmt::Display for Event {
                     Goal::Approach => "nearer to an exit",
                     Goal::Return => "back to an unvisited exit",
                     Goal::Home => "home",
+                    Goal::Edge => "to look beyond the edges",
                     Goal::Unseen => "to a place that no scan has seen",
                 };
                 write!(f, "flying {meters:.1} m {what}")

@@ -21,7 +21,7 @@ pub(super) enum Facing {
 }
 
 impl Facing {
-    const ALL: [Self; 4] = [Self::Ahead, Self::Left, Self::Right, Self::Back];
+    pub(super) const ALL: [Self; 4] = [Self::Ahead, Self::Left, Self::Right, Self::Back];
 
     /// Bearing of the direction of travel in the body frame, counterclockwise.
     pub(super) fn bearing(self) -> f64 {

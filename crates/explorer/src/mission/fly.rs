@@ -33,8 +33,19 @@ const GO_SPEED_CM_S: i64 = 40;
 
 /// Steps in which a look is turned less far.
 const LOOK_SHARES: u32 = 8;
-/// Shares of a leg that are tried, the whole first: shorter ones need less room.
-const LEG_SHARES: [f64; 4] = [1.0, 0.66, 0.4, 0.2];
+/// Room that a leg keeps beyond what its errors need, metres, and the shares of the leg that are tried with it, the whole first: rather
+/// a shorter leg than a narrow one.
+const LEG_CHOICES: [(f64, &[f64]); 5] = [
+    (0.10, &[1.0, 0.66]),
+    (0.06, &[1.0, 0.66]),
+    (0.10, &[0.4]),
+    (0.06, &[0.4]),
+    (0.02, &[1.0, 0.66, 0.4, 0.2]),
+];
+/// Legs out of a tight place, metres.
+const ESCAPES_M: [f64; 3] = [0.2, 0.3, 0.4];
+/// What such a leg must win in room, metres.
+const LEAST_ESCAPE_M: f64 = 0.02;
 
 /// What to do at the end of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,7 +113,8 @@ impl Fly {
             }
             return self.toward(context, &pose, &delta);
         }
-        self.arrive(context, &pose)
+        arrive(context, &pose, self.arrival)
+            .unwrap_or_else(|| Step::Become(Phase::Think(Think::again())))
     }
 
     /// One turn or one straight move towards a waypoint `delta` metres (forward, left, up) away.
@@ -142,37 +154,43 @@ impl Fly {
                 self.exact = true;
                 Step::Wait
             }
-            None => Step::Become(Phase::Think(Think::again())),
+            None => match escape(context, scene, pose) {
+                Some(command) => {
+                    self.facing = None;
+                    Step::Send(command)
+                }
+                None => Step::Become(Phase::Think(Think::again())),
+            },
         }
     }
+}
 
-    fn arrive(&self, context: &mut Context<'_>, pose: &LevelPose) -> Step {
-        match self.arrival {
-            Arrival::Home => context.land(context.homing.clone().unwrap_or(Outcome::Explored)),
-            Arrival::Site(portal) => {
-                if let Some(portal) = portal.and_then(|index| context.atlas.portal_mut(index)) {
-                    portal.state = PortalState::Traversed;
-                }
-                Step::Become(Phase::Scan(Scan::full(context)))
+/// What to do at the end of a path; `None` when that would show nothing new.
+pub(super) fn arrive(
+    context: &mut Context<'_>,
+    pose: &LevelPose,
+    arrival: Arrival,
+) -> Option<Step> {
+    match arrival {
+        Arrival::Home => Some(context.land(context.homing.clone().unwrap_or(Outcome::Explored))),
+        Arrival::Site(portal) => {
+            if let Some(portal) = portal.and_then(|index| context.atlas.portal_mut(index)) {
+                portal.state = PortalState::Traversed;
             }
-            Arrival::Look { portal, left } => look_at(context, pose, portal, left)
-                .unwrap_or_else(|| Step::Become(Phase::Think(Think::again()))),
+            Some(Step::Become(Phase::Scan(Scan::full())))
         }
+        Arrival::Look { portal, left } => look_at(context, pose, portal, left),
     }
 }
 
 /// Looks at the place behind a portal from here, `left` map units away, and notes that it did; `None` when there is nothing to
 /// turn to and no room to climb, so that a look would show nothing new.
-pub(super) fn look_at(
-    context: &mut Context<'_>,
-    pose: &LevelPose,
-    portal: usize,
-    left: f64,
-) -> Option<Step> {
+fn look_at(context: &mut Context<'_>, pose: &LevelPose, portal: usize, left: f64) -> Option<Step> {
     let portal = context.atlas.portal_mut(portal)?;
     portal.approaches += 1;
     portal.closest = portal.closest.min(left);
-    let towards = pose.turn_to(&portal.through);
+    let through = portal.through;
+    let towards = pose.turn_to(&through);
     let towards = context
         .scene
         .as_ref()
@@ -242,16 +260,46 @@ fn longest_free_leg(
     facing: Facing,
 ) -> Option<Command> {
     let longest = context.config.longest_leg_m.min(delta.norm());
-    LEG_SHARES.iter().find_map(|share| {
-        let length = (longest * share).max(SHORTEST_MOVE_M);
-        let (command, flown) = straight(delta, facing, length)?;
-        let radius = scene.units(context.config.flying_radius_m(flown.norm()));
-        let offset = pose.forward * flown.x + pose.left() * flown.y + pose.up * flown.z;
-        let end = pose.position + offset / scene.meters_per_unit;
-        scene
-            .motion_is_free(&pose.position, &end, radius)
-            .then_some(command)
+    LEG_CHOICES.iter().find_map(|(spare, shares)| {
+        shares.iter().find_map(|share| {
+            let length = (longest * share).max(SHORTEST_MOVE_M);
+            let (command, flown) = straight(delta, facing, length)?;
+            let radius = scene.units(context.config.flying_radius_m(flown.norm()) + spare);
+            let end = pose.position + in_map(pose, &flown) / scene.meters_per_unit;
+            scene
+                .motion_is_free(&pose.position, &end, radius)
+                .then_some(command)
+        })
     })
+}
+
+/// A short move out of a place that is tighter than a leg allows: one that never comes nearer to anything and ends with more room.
+fn escape(context: &Context<'_>, scene: &Scene, pose: &LevelPose) -> Option<Command> {
+    let enough = scene.units(context.config.flying_radius_m(0.0));
+    let here = scene.clearance(&pose.position, enough);
+    if here >= enough {
+        return None;
+    }
+    let mut best: Option<(f64, Command)> = None;
+    for facing in Facing::ALL {
+        for meters in ESCAPES_M {
+            let offset = in_map(pose, &(facing.axis() * meters)) / scene.meters_per_unit;
+            let end = pose.position + offset;
+            let room = scene.clearance(&end, 2.0 * enough);
+            let wins = room > here + scene.units(LEAST_ESCAPE_M)
+                && best.as_ref().is_none_or(|(most, _)| room > *most)
+                && scene.motion_is_free(&pose.position, &end, 0.9 * here);
+            if wins && let Ok(distance) = Distance::from_meters(meters) {
+                best = Some((room, facing.command(distance)));
+            }
+        }
+    }
+    best.map(|(_, command)| command)
+}
+
+/// A displacement (forward, left, up) along the map's axes.
+fn in_map(pose: &LevelPose, flown: &Vector3<f64>) -> Vector3<f64> {
+    pose.forward * flown.x + pose.left() * flown.y + pose.up * flown.z
 }
 
 /// An angle in (−π, π].

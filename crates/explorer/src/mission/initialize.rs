@@ -17,17 +17,22 @@ const ROUNDS: usize = 7;
 #[derive(Debug, Default)]
 pub(super) struct Initialize {
     round: usize,
+    initialized: bool,
     maneuver: Maneuver,
 }
 
 impl Initialize {
     pub(super) fn next(&mut self, context: &mut Context<'_>) -> Step {
-        if context.knowledge.is_tracking() {
-            context.log(Event::Initialized);
+        // A map without a scale cannot be flown in: the take-off may have initialised it, so translate all the same.
+        if context.knowledge.is_tracking() && context.knowledge.meters_per_unit().is_some() {
+            if !self.initialized {
+                self.initialized = true;
+                context.log(Event::Initialized);
+            }
             // What is left of the manoeuvre brings the drone back to where it began: finish that first.
             return match self.maneuver.next() {
                 Some(command) => Step::Send(command),
-                None => Step::Become(Phase::Scan(Scan::full(context))),
+                None => Step::Become(Phase::Scan(Scan::full())),
             };
         }
         if let Some(command) = self.maneuver.next() {

@@ -10,6 +10,7 @@
 
 mod choice;
 mod context;
+mod edge;
 mod event;
 mod facing;
 mod fly;
@@ -23,6 +24,8 @@ mod pilot;
 mod record;
 mod recover;
 mod scan;
+mod spin;
+mod survey;
 mod take_off;
 mod think;
 
@@ -110,6 +113,7 @@ impl Mission {
             map: None,
             last: None,
             failures: 0,
+            sticks_held: false,
             scans: Vec::new(),
             tried: Vec::new(),
             homing: None,
@@ -161,12 +165,22 @@ impl Mission {
         if !self.pilot.is_idle() {
             return Output::Wait;
         }
+        if self.shared.sticks_held && !matches!(self.phase, Phase::Scan(_)) {
+            // Something ended the turn early; the drone refuses moves while the sticks are held.
+            self.shared.sticks_held = false;
+            return Output::Send(Command::RC_ZERO);
+        }
         loop {
             let mut context = Context {
                 shared: &mut self.shared,
                 stages,
             };
             match self.phase.next(&mut context) {
+                // The drone never answers to sticks.
+                Step::Send(command @ Command::Rc { .. }) => {
+                    self.shared.sticks_held = command != Command::RC_ZERO;
+                    return Output::Send(command);
+                }
                 Step::Send(command) => {
                     self.pilot.start(command.clone(), &self.shared.knowledge);
                     return Output::Send(command);

@@ -1,12 +1,11 @@
-//! Turn on the spot while going up and down: the turn shows everything, the climbs give the parallax that triangulates it.
-
-use core::f64::consts::TAU;
+//! Look all around, or once in one direction from two heights, since a map point needs parallax.
 
 use super::context::Context;
 use super::event::Event;
 use super::maneuver::{climb, turn};
 use super::phase::{Phase, Step};
 use super::recover::Recover;
+use super::spin::{Spin, Spun};
 use super::think::Think;
 use tello_sdk::Command;
 
@@ -16,7 +15,7 @@ const SHORTEST_CLIMB_CM: i64 = 20;
 /// Turns below this show nothing new, radians.
 const SMALLEST_LOOK: f64 = 0.15;
 
-/// A turn in steps, a climb or a descent after each.
+/// A full turn by sticks, or a list of turns with a climb or a descent after each.
 #[derive(Debug)]
 pub(super) struct Scan {
     purpose: Purpose,
@@ -26,6 +25,8 @@ pub(super) struct Scan {
     /// How far above the flying height the drone is now, centimetres.
     raised: Option<i64>,
     started: bool,
+    /// The full turn under way.
+    spin: Option<Spin>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,9 +39,8 @@ enum Purpose {
 
 impl Scan {
     /// A full turn.
-    pub(super) fn full(context: &Context<'_>) -> Self {
-        let steps = context.config.scan_steps.max(3);
-        Self::new(Purpose::Site, vec![TAU / steps as f64; steps])
+    pub(super) fn full() -> Self {
+        Self::new(Purpose::Site, Vec::new())
     }
 
     /// A look, from two heights, in the direction that is `towards` radians from the present heading; `None` when that is where the
@@ -58,6 +58,7 @@ impl Scan {
             climb_next: false,
             raised: None,
             started: false,
+            spin: None,
         }
     }
 
@@ -68,6 +69,14 @@ impl Scan {
                 context.begin_scan();
                 let number = context.scans.len();
                 context.log(Event::ScanStarted { number });
+                self.spin = Some(Spin::new(context));
+            }
+        }
+        if let Some(spin) = &mut self.spin {
+            match spin.next(context) {
+                Spun::Send(command) => return Step::Send(command),
+                Spun::Wait => return Step::Wait,
+                Spun::Done => self.spin = None,
             }
         }
         loop {

@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use super::choice::{Choice, home_choice, next_choice};
 use super::context::Context;
 use super::event::{Event, Goal};
-use super::fly::{Arrival, Fly, look_at};
+use super::fly::{Arrival, Fly, arrive};
 use super::outcome::Outcome;
 use super::phase::{Phase, Step};
 use super::record::Cycle;
@@ -16,7 +16,7 @@ use super::scan::Scan;
 use crate::atlas::KnownLimits;
 use crate::heading::LevelPose;
 use crate::reach::{Reach, ReachLimits};
-use crate::route::Route;
+use crate::route::{Route, RouteRadii};
 use crate::scene::{Presence, Scene};
 use crate::stage::{Stage, staged};
 
@@ -24,6 +24,10 @@ use crate::stage::{Stage, staged};
 const MOST_PLACES: usize = 200_000;
 /// Flights shorter than this are looks from where the drone is, metres.
 const SHORTEST_FLIGHT_M: f64 = 0.25;
+/// The mission does not end this far from every scan without another one, metres.
+const UNSCANNED_M: f64 = 0.5;
+/// Scans without which no mission ends: another one in the same place still finds new points.
+const LEAST_SCANS: usize = 3;
 /// Flights home at most: the battery's reserve holds no more.
 const MOST_HOME_FLIGHTS: usize = 6;
 /// Perceptions that fail in a row before the mission gives up: each follows a new scan.
@@ -53,7 +57,7 @@ impl Think {
         };
         if context.epoch != Some(context.knowledge.epoch()) {
             // SLAM began a new map: its scale and its plane are unknown until a scan has been flown in it.
-            return Step::Become(Phase::Scan(Scan::full(context)));
+            return Step::Become(Phase::Scan(Scan::full()));
         }
         let Some(map) = context.map.take() else {
             return Step::NeedMap;
@@ -75,7 +79,7 @@ impl Think {
         if context.failures >= MOST_FAILURES {
             return context.land(Outcome::TrackingLost);
         }
-        Step::Become(Phase::Scan(Scan::full(context)))
+        Step::Become(Phase::Scan(Scan::full()))
     }
 
     fn decide(
@@ -117,18 +121,23 @@ impl Think {
         scene: &Scene,
         cycle: &mut Cycle,
     ) -> Step {
-        let radii = radii(context, pose, scene);
-        let radius = radii.last().copied().unwrap_or_default();
-        let reach = staged(context.stages, Stage::Choose, || {
-            flood(&context.shared.config.exploration, pose, scene, radius)
-        });
+        let radii = RouteRadii {
+            least: scene.units(context.config.planning_radius_m()),
+            comfortable: scene.units(context.config.comfortable_radius_m()),
+        };
+        let reach = flood(context, pose, scene, radii);
         if context.homing.is_none() {
-            match self.explore(context, pose, scene, &reach, &radii, cycle) {
+            match self.explore(context, pose, scene, &reach, radii, cycle) {
                 Some(step) => return step,
+                // Before giving up, one more look around from wherever the drone has come to.
+                None if context.scans.len() < LEAST_SCANS || is_unscanned(context, scene, pose) => {
+                    context.shared.tried.push(pose.position);
+                    return Step::Become(Phase::Scan(Scan::full()));
+                }
                 None => context.homing = Some(Outcome::Explored),
             }
         }
-        go_home(context, pose, scene, &reach, &radii, cycle)
+        go_home(context, pose, scene, &reach, radii, cycle)
     }
 
     /// The next exploring step; `None` when nothing is left to explore.
@@ -138,16 +147,15 @@ impl Think {
         pose: &LevelPose,
         scene: &Scene,
         reach: &Reach,
-        radii: &[f64],
+        radii: RouteRadii,
         cycle: &mut Cycle,
     ) -> Option<Step> {
         loop {
-            let choice = next_choice(context, scene, reach)?;
-            if let Arrival::Look { portal, left } = choice.arrival
-                && distance(reach, choice.place, pose) < scene.units(SHORTEST_FLIGHT_M)
-            {
-                // Nowhere nearer to fly to, but a look from here may prove more space free.
-                match look_at(context, pose, portal, left) {
+            let choice = choose(context, scene, reach, pose)?;
+            if distance(reach, choice.place, pose) < scene.units(SHORTEST_FLIGHT_M) {
+                // The drone is there already.
+                note_attempt(context, reach, &choice);
+                match arrive(context, pose, choice.arrival) {
                     Some(step) => return Some(step),
                     None => continue,
                 }
@@ -160,6 +168,14 @@ impl Think {
     }
 }
 
+/// Whether no scan was made or tried near here.
+fn is_unscanned(context: &Context<'_>, scene: &Scene, pose: &LevelPose) -> bool {
+    let near = scene.units(UNSCANNED_M);
+    let sites = context.atlas.sites().iter().map(|site| site.position);
+    let mut known = sites.chain(context.tried.iter().copied());
+    !known.any(|place| (place - pose.position).norm() < near)
+}
+
 /// Flies back to where the drone took off: the one place whose ground is known to be clear. Lands right here after too many
 /// attempts, or without any way.
 fn go_home(
@@ -167,7 +183,7 @@ fn go_home(
     pose: &LevelPose,
     scene: &Scene,
     reach: &Reach,
-    radii: &[f64],
+    radii: RouteRadii,
     cycle: &mut Cycle,
 ) -> Step {
     context.home_flights += 1;
@@ -221,19 +237,17 @@ fn set_out(
     Step::Become(Phase::Fly(Fly::along(route, choice.arrival)))
 }
 
-/// Radii to plan with, map units, the widest first; less than the least one only where the drone already is nearer to an obstacle.
-fn radii(context: &Context<'_>, pose: &LevelPose, scene: &Scene) -> Vec<f64> {
-    let body = scene.units(context.config.drone_radius_m);
-    let radii = context
-        .config
-        .planning_radii_m()
-        .map(|meters| scene.units(meters));
-    let mut limited: Vec<f64> = radii
-        .iter()
-        .map(|&radius| scene.radius_at(&pose.position, radius, body))
-        .collect();
-    limited.dedup();
-    limited
+/// What to do next, as a stage of its own.
+fn choose(
+    context: &mut Context<'_>,
+    scene: &Scene,
+    reach: &Reach,
+    pose: &LevelPose,
+) -> Option<Choice> {
+    context.stages.begin(Stage::Choose);
+    let choice = next_choice(context, scene, reach, pose);
+    context.stages.end(Stage::Choose);
+    choice
 }
 
 /// Plans a path and counts the flight as failed until it arrives.
@@ -241,7 +255,7 @@ fn plan(
     context: &mut Context<'_>,
     scene: &Scene,
     reach: &Reach,
-    radii: &[f64],
+    radii: RouteRadii,
     choice: &Choice,
 ) -> Option<Route> {
     let shared = &mut *context.shared;
@@ -311,11 +325,13 @@ fn presence(context: &Context<'_>, pose: &LevelPose, meters_per_unit: f64) -> Ve
             });
         }
     }
-    if let Some(first) = places.first().map(|first| first.center) {
-        places.push(Presence {
-            center: first,
+    // The bubble reaches from the height of the first pose to that of the first scan.
+    let scanned = context.first_scan().map(Into::into);
+    for center in [places.first().map(|first| first.center), scanned] {
+        places.extend(center.map(|center| Presence {
+            center,
             radius: config.start_bubble_m / meters_per_unit,
-        });
+        }));
     }
     places.push(Presence {
         center: pose.position.into(),
@@ -349,20 +365,23 @@ fn register(
         .add_site(pose.position, report, trail, &limits);
 }
 
-fn flood(
-    config: &crate::config::ExplorationConfig,
-    pose: &LevelPose,
-    scene: &Scene,
-    radius: f64,
-) -> Reach {
-    let band = scene.units(config.height_band_m);
+/// The places that the drone can reach, in a band about the height of the first scan.
+fn flood(context: &mut Context<'_>, pose: &LevelPose, scene: &Scene, radii: RouteRadii) -> Reach {
+    let band = scene.units(context.config.exploration.height_band_m);
+    let raised = context
+        .first_scan()
+        .map_or(0.0, |first| pose.up.dot(&(pose.position - first)));
     let limits = ReachLimits {
         step: scene.free.resolution(),
-        below: band,
-        above: band,
+        below: (band + raised).max(0.0),
+        above: (band - raised).max(0.0),
+        least: radii.least,
+        comfortable: radii.comfortable,
         max_places: MOST_PLACES,
     };
-    Reach::flood(pose, &limits, |a, b| scene.motion_is_free(a, b, radius))
+    staged(context.stages, Stage::Choose, || {
+        Reach::flood(pose, &limits, scene)
+    })
 }
 
 fn distance(reach: &Reach, place: usize, pose: &LevelPose) -> f64 {

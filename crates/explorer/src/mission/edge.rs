@@ -1,0 +1,186 @@
+//! Edges of what is proven: reached places with room between the obstacles ahead, but no proof of it.
+//!
+//! Behind an edge lies a doorway that was seen at a slant, or a blank wall: from the map alone nobody can tell. A camera that looked at it
+//! from two places apart would have seen through a doorway, so such an edge is a wall, and is no longer open.
+//! Input:  the floor's places, the scene, the trail of the camera. Output: the open edges.
+//! Cost:   eight motion checks for every place near something, then a line of sight for every view of an edge until two count.
+
+use core::f64::consts::{FRAC_PI_4, PI};
+
+use nalgebra::{Point3, Rotation3, Unit, Vector3};
+
+use super::context::Shared;
+use crate::heading::LevelPose;
+use crate::reach::Place;
+use crate::scene::Scene;
+
+/// Views this far apart count as two, metres.
+pub(super) const VANTAGE_M: f64 = 0.7;
+
+/// How far ahead an edge must be clear of obstacles, metres: past the unproven band before a wall, which is a tenth of its distance.
+const AHEAD_M: f64 = 0.9;
+/// Half the width of what must be clear ahead, metres.
+const AHEAD_RADIUS_M: f64 = 0.15;
+/// From nearer an edge is not in view as a whole, from farther its surroundings have no parallax, metres.
+const VIEW_M: core::ops::Range<f64> = 0.4..3.0;
+/// Cosine of the largest angle between the camera's axis and an edge in view: half of 55 degrees and a margin.
+const IN_VIEW: f64 = 0.91;
+/// Cosine of the largest angle at which a doorway is looked through.
+const FACING: f64 = 0.5;
+/// Views of the trail are this far or this much turned apart, metres and cosine.
+const NEXT_VIEW: (f64, f64) = (0.3, 0.97);
+/// Open edges that are told apart at most.
+const MOST_EDGES: usize = 200;
+/// As far as points behind an edge are counted, metres.
+const BEHIND_M: f64 = 4.5;
+/// Points behind an edge that make it twice as promising, and how much more at most.
+const TELLING_POINTS: f64 = 10.0;
+const MOST_TOLD: f64 = 3.0;
+
+/// What a second look at an edge is worth against the first: most were walls.
+const SECOND_LOOK: f64 = 0.3;
+
+/// A reached place with room ahead that nothing proves.
+pub(super) struct Edge {
+    position: Point3<f64>,
+    /// Unit vector, level.
+    ahead: Vector3<f64>,
+    /// From where the camera looked at it, at most one place.
+    vantage: Option<Point3<f64>>,
+    /// Its length in metres, more where points lie behind it, less after a look at it.
+    pub(super) weight: f64,
+}
+
+impl Edge {
+    /// Whether a look from `place` would be a new view of it.
+    pub(super) fn gains_from(&self, scene: &Scene, place: &Point3<f64>) -> bool {
+        let apart = scene.units(VANTAGE_M);
+        let fresh = self
+            .vantage
+            .is_none_or(|vantage| (vantage - place).norm() >= apart);
+        fresh && self.shows_from(scene, place) && scene.sees(place, &self.position)
+    }
+
+    /// Whether it lies at a fitting distance and angle.
+    fn shows_from(&self, scene: &Scene, place: &Point3<f64>) -> bool {
+        let ray = self.middle(scene) - place;
+        let range = ray.norm();
+        VIEW_M.contains(&(range * scene.meters_per_unit)) && ray.dot(&self.ahead) > FACING * range
+    }
+
+    fn middle(&self, scene: &Scene) -> Point3<f64> {
+        self.position + self.ahead * (0.5 * scene.units(AHEAD_M))
+    }
+}
+
+/// Every edge that was not looked at from two places yet.
+pub(super) fn open_edges(
+    shared: &Shared,
+    scene: &Scene,
+    pose: &LevelPose,
+    floor: &[(usize, Place)],
+) -> Vec<Edge> {
+    let views = views(shared, scene);
+    let mut open = all_edges(shared, scene, pose, floor);
+    open.retain_mut(|edge| {
+        let apart = scene.units(VANTAGE_M);
+        for (position, forward) in &views {
+            let ray = edge.middle(scene) - position;
+            let fresh = edge
+                .vantage
+                .is_none_or(|vantage| (vantage - position).norm() >= apart);
+            let in_view = ray.dot(forward) > IN_VIEW * ray.norm();
+            if fresh
+                && in_view
+                && edge.shows_from(scene, position)
+                && scene.sees(position, &edge.position)
+            {
+                if edge.vantage.is_some() {
+                    return false;
+                }
+                edge.vantage = Some(*position);
+            }
+        }
+        true
+    });
+    let stride = open.len().div_ceil(MOST_EDGES).max(1);
+    let mut kept: Vec<Edge> = open.into_iter().step_by(stride).collect();
+    let cell = 2.0 * scene.free.resolution() * scene.meters_per_unit;
+    for edge in &mut kept {
+        let told = (points_behind(scene, edge) as f64 / TELLING_POINTS).min(MOST_TOLD);
+        let news = if edge.vantage.is_some() {
+            SECOND_LOOK
+        } else {
+            1.0
+        };
+        edge.weight = stride as f64 * cell * (1.0 + told) * news;
+    }
+    kept
+}
+
+fn all_edges(
+    shared: &Shared,
+    scene: &Scene,
+    pose: &LevelPose,
+    floor: &[(usize, Place)],
+) -> Vec<Edge> {
+    let axis = Unit::new_normalize(pose.up);
+    let directions: [Vector3<f64>; 8] = core::array::from_fn(|side| {
+        let turn = side as f64 * FRAC_PI_4 - PI;
+        Rotation3::from_axis_angle(&axis, turn) * pose.forward
+    });
+    let (length, radius) = (scene.units(AHEAD_M), scene.units(AHEAD_RADIUS_M));
+    let comfortable = scene.units(shared.config.comfortable_radius_m());
+    let mut edges = Vec::new();
+    for (_, place) in floor {
+        if place.clearance >= comfortable {
+            continue;
+        }
+        for ahead in &directions {
+            let beyond = place.position + ahead * length;
+            let (from, to) = (place.position.into(), beyond.into());
+            if !scene.sees(&place.position, &beyond)
+                && scene.obstacles.motion_is_free(from, to, radius)
+            {
+                edges.push(Edge {
+                    position: place.position,
+                    ahead: *ahead,
+                    vantage: None,
+                    weight: 0.0,
+                });
+            }
+        }
+    }
+    edges
+}
+
+/// The camera's positions and axes of this epoch, thinned.
+fn views(shared: &Shared, scene: &Scene) -> Vec<(Point3<f64>, Vector3<f64>)> {
+    let epoch = shared.knowledge.epoch();
+    let mut views: Vec<(Point3<f64>, Vector3<f64>)> = Vec::new();
+    let trail = shared.knowledge.trail().iter();
+    for frame in trail.filter(|frame| frame.epoch == epoch) {
+        let position = Point3::from(frame.world_from_camera.translation.vector);
+        let forward = frame.world_from_camera.rotation * Vector3::z();
+        let same = views.last().is_some_and(|(last, axis)| {
+            (last - position).norm() < scene.units(NEXT_VIEW.0) && axis.dot(&forward) > NEXT_VIEW.1
+        });
+        if !same {
+            views.push((position, forward));
+        }
+    }
+    views
+}
+
+/// Points of the map that lie ahead, behind the edge.
+fn points_behind(scene: &Scene, edge: &Edge) -> usize {
+    let range = scene.units(AHEAD_M)..scene.units(BEHIND_M);
+    let kept = scene.kept.iter();
+    kept.filter_map(|&index| scene.points.get(index))
+        .filter(|&&point| {
+            let ray = Point3::from(point) - edge.position;
+            let depth = ray.dot(&edge.ahead);
+            range.contains(&depth) && depth > 0.94 * ray.norm()
+        })
+        .count()
+}

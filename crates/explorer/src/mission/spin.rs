@@ -1,0 +1,186 @@
+//! One turn on the spot by sticks while going up and down: the paper's scan. The turn shows everything, the climbs give the parallax
+//! that triangulates it.
+//!
+//! Slow enough that pictures stay sharp and that every direction is seen from both heights while it is in view: 36 degrees a second
+//! on a Tello, a climb or descent of 0.4 m in about 1.3 s.
+
+use core::f64::consts::{PI, TAU};
+use core::time::Duration;
+
+use nalgebra::Point3;
+use tello_sdk::{Command, Stick};
+
+use super::context::Context;
+
+/// A little more than a full turn, radians, so that the ends overlap.
+const FULL_TURN: f64 = TAU + 0.2;
+/// Yaw rate at full deflection, radians per second, taken where the drone does not tell its heading.
+const FULL_YAW_RATE: f64 = PI / 2.0;
+/// Longest turn: a drone that does not get round by then never will.
+const LONGEST: Duration = Duration::from_secs(40);
+/// Climbs are reversed this much early, metres: the drone coasts on.
+const COAST_M: f64 = 0.05;
+/// Coming to rest after the sticks are let go.
+const REST: Duration = Duration::from_millis(700);
+/// Longest climb or descent in one go, whatever the measured height says: 0.8 m on a Tello.
+const LONGEST_CLIMB: Duration = Duration::from_secs(2);
+/// Longest return to the height at which the turn began.
+const LONGEST_RETURN: Duration = Duration::from_secs(3);
+/// The drone is back at its height within this, metres.
+const LEVEL_M: f64 = 0.05;
+
+/// What the turn wants next.
+#[derive(Debug, PartialEq)]
+pub(super) enum Spun {
+    Send(Command),
+    Wait,
+    Done,
+}
+
+/// A turn under way.
+#[derive(Debug)]
+pub(super) struct Spin {
+    began: Duration,
+    last: Option<Duration>,
+    /// Turned so far, radians, clockwise.
+    turned: f64,
+    heading: Option<f64>,
+    /// Where it began, with the map's epoch.
+    start: Option<(u64, Point3<f64>)>,
+    /// Height above the start, metres.
+    raised: f64,
+    rising: bool,
+    /// When the present climb or descent began.
+    since: Duration,
+    /// Height above the ground at the start, metres, as the drone tells it.
+    height_m: Option<f64>,
+    lowest_m: f64,
+    highest_m: f64,
+    stage: Stage,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Stage {
+    Turning,
+    Returning { until: Duration },
+    Resting { until: Duration },
+}
+
+impl Spin {
+    pub(super) fn new(context: &Context<'_>) -> Self {
+        let full = context.config.scan_climb_cm as f64 / 100.0;
+        let free = |sign: f64, most: f64| {
+            [1.0, 0.75, 0.5]
+                .map(|share| share * most)
+                .into_iter()
+                .find(|&meters| meters > 0.0 && context.vertical_is_free(sign * meters))
+                .unwrap_or(0.0)
+        };
+        let highest_m = free(1.0, full);
+        let lowest_m = -free(-1.0, full - highest_m);
+        Self {
+            began: context.knowledge.now(),
+            last: None,
+            turned: 0.0,
+            heading: None,
+            start: context.knowledge.tracked_position(),
+            raised: 0.0,
+            rising: true,
+            since: context.knowledge.now(),
+            height_m: context.knowledge.height_m(),
+            lowest_m,
+            highest_m,
+            stage: Stage::Turning,
+        }
+    }
+
+    pub(super) fn next(&mut self, context: &Context<'_>) -> Spun {
+        let now = context.knowledge.now();
+        if self.last == Some(now) {
+            return Spun::Wait;
+        }
+        self.measure(context, now);
+        self.last = Some(now);
+        match self.stage {
+            Stage::Turning if self.turned < FULL_TURN && now < self.began + LONGEST => {
+                let climb = self.climb(context);
+                Spun::Send(sticks(climb, context.config.scan_yaw_percent))
+            }
+            Stage::Turning => {
+                let until = now + LONGEST_RETURN;
+                self.stage = Stage::Returning { until };
+                Spun::Send(Command::RC_ZERO)
+            }
+            Stage::Returning { until } => {
+                let level = self.raised.abs() < LEVEL_M;
+                if level || now >= until || !context.knowledge.is_tracking() {
+                    self.stage = Stage::Resting { until: now + REST };
+                    return Spun::Send(Command::RC_ZERO);
+                }
+                // Slower and slower towards the right height.
+                let climb = (-self.raised * 100.0).clamp(-30.0, 30.0).round() as i64;
+                Spun::Send(sticks(climb, 0))
+            }
+            Stage::Resting { until } if now < until => Spun::Wait,
+            Stage::Resting { .. } => Spun::Done,
+        }
+    }
+
+    /// How far it has turned and climbed.
+    fn measure(&mut self, context: &Context<'_>, now: Duration) {
+        let seconds = self
+            .last
+            .map_or(0.0, |last| now.saturating_sub(last).as_secs_f64());
+        let heading = context.knowledge.heading();
+        self.turned += match (self.heading, heading) {
+            (Some(before), Some(after)) => (after - before).sin().atan2((after - before).cos()),
+            _ if self.stage == Stage::Turning => {
+                seconds * FULL_YAW_RATE * context.config.scan_yaw_percent as f64 / 100.0
+            }
+            _ => 0.0,
+        };
+        self.heading = heading;
+        let here = context.knowledge.tracked_position();
+        if let (Some((epoch, start)), Some((present, here)), Some(scale)) =
+            (self.start, here, context.knowledge.meters_per_unit())
+            && epoch == present
+        {
+            self.raised = context.knowledge.up().dot(&(here - start)) * scale;
+        } else if let (Some(start), Some(height)) = (self.height_m, context.knowledge.height_m()) {
+            self.raised = height - start;
+        }
+    }
+
+    /// Throttle, percent. Without a pose the drone keeps its height: nothing tells it when to turn back.
+    fn climb(&mut self, context: &Context<'_>) -> i64 {
+        let tracked = context.knowledge.is_tracking() && self.start.is_some();
+        if !tracked || self.highest_m - self.lowest_m <= 0.0 {
+            return 0;
+        }
+        let now = context.knowledge.now();
+        let late = now >= self.since + LONGEST_CLIMB;
+        let rising = if self.rising {
+            self.raised < self.highest_m - COAST_M && !late
+        } else {
+            self.raised <= self.lowest_m + COAST_M || late
+        };
+        if rising != self.rising {
+            self.rising = rising;
+            self.since = now;
+        }
+        let percent = context.config.scan_throttle_percent;
+        if self.rising { percent } else { -percent }
+    }
+}
+
+/// Throttle and yaw, percent; clockwise is positive.
+fn sticks(throttle: i64, yaw: i64) -> Command {
+    let stick =
+        |percent: i64| Stick::from_percent(percent.clamp(-100, 100)).unwrap_or(Stick::CENTER);
+    Command::Rc {
+        roll: Stick::CENTER,
+        pitch: Stick::CENTER,
+        throttle: stick(throttle),
+        yaw: stick(yaw),
+    }
+}
