@@ -49,16 +49,17 @@ pub(super) fn next_choice(
     pose: &LevelPose,
 ) -> Option<Choice> {
     let mut best: Option<(f64, Choice)> = None;
+    let mut blocked = Vec::new();
+    let survey = Survey::new(context.shared, scene, reach, pose);
     for portal in context.atlas.unvisited() {
         match portal_choice(context, scene, reach, portal) {
             Some(choice) => {
-                let gain = portal_gain(context, scene, portal, choice.goal);
+                let gain = portal_gain(context, scene, &survey, (portal, &choice, reach));
                 keep_better(&mut best, worth(scene, reach, choice.place, gain), choice);
             }
-            None => block(context, portal),
+            None => blocked.push(portal),
         }
     }
-    let survey = Survey::new(context.shared, scene, reach, pose);
     if let Some((area, place)) = survey.unseen() {
         let choice = Choice {
             place,
@@ -71,9 +72,11 @@ pub(super) fn next_choice(
             choice,
         );
     }
-    best.map(|(_, choice)| choice)
-        .or_else(|| survey.edges())
-        .or_else(|| far_choice(context, scene, reach))
+    let choice = best.map(|(_, choice)| choice).or_else(|| survey.edges());
+    for portal in blocked {
+        block(context, portal);
+    }
+    choice.or_else(|| far_choice(context, scene, reach))
 }
 
 fn keep_better(best: &mut Option<(f64, Choice)>, worth: f64, choice: Choice) {
@@ -88,14 +91,21 @@ fn worth(scene: &Scene, reach: &Reach, place: usize, gain: f64) -> f64 {
     gain / (way * scene.meters_per_unit / PROGRESS_M_PER_S + SCAN_S)
 }
 
-fn portal_gain(context: &Context<'_>, scene: &Scene, portal: usize, goal: Goal) -> f64 {
+/// Square metres that an exit promises: what is proven behind it and no scan saw, and what may lie beyond.
+fn portal_gain(
+    context: &Context<'_>,
+    scene: &Scene,
+    survey: &Survey<'_>,
+    (portal, choice, reach): (usize, &Choice, &Reach),
+) -> f64 {
     let through = context.atlas.portals().get(portal).map(|p| p.through);
     let seen = through.is_some_and(|place| scene.free.state(place.into()) == VoxelState::Free);
-    match goal {
-        Goal::Through => OPEN_EXIT_M2,
-        _ if seen => SEEN_EXIT_M2,
-        _ => UNSEEN_EXIT_M2,
+    if choice.goal == Goal::Through {
+        let behind = reach.position(choice.place);
+        let area = behind.map_or(0.0, |place| survey.unseen_near(&place));
+        return (UNSEEN_EXIT_M2 + area).min(OPEN_EXIT_M2);
     }
+    if seen { SEEN_EXIT_M2 } else { UNSEEN_EXIT_M2 }
 }
 
 /// How to get through a portal or nearer to it; `None` when there is no way and no progress.

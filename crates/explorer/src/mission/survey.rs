@@ -38,6 +38,8 @@ pub(super) struct Survey<'a> {
     pose: &'a LevelPose,
     /// Every second place at the drone's height, with its number.
     floor: Vec<(usize, Place)>,
+    /// Those of them that no scan saw.
+    unseen: Vec<(usize, Place)>,
 }
 
 impl<'a> Survey<'a> {
@@ -58,36 +60,43 @@ impl<'a> Survey<'a> {
                 let offset = pose.body_displacement(&place.position);
                 offset.z.abs() < 0.5 * step && even(offset.x) && even(offset.y)
             });
+        let floor: Vec<(usize, Place)> = floor.collect();
+        let unseen = floor
+            .iter()
+            .filter(|(_, place)| !is_seen(shared, scene, &place.position))
+            .copied()
+            .collect();
         Self {
             shared,
             scene,
             pose,
-            floor: floor.collect(),
+            floor,
+            unseen,
         }
+    }
+
+    /// Square metres that no scan saw and a scan at `place` shows.
+    pub(super) fn unseen_near(&self, place: &Point3<f64>) -> f64 {
+        let range = self.scene.units(UNSEEN_RANGE_M);
+        let cell = 2.0 * self.scene.free.resolution() * self.scene.meters_per_unit;
+        let near = self
+            .unseen
+            .iter()
+            .filter(|(_, other)| (other.position - place).norm() < range);
+        near.count() as f64 * cell * cell
     }
 
     /// The unseen square metres that a scan shows, and the reachable place for it. Each scan becomes a site, at a distance from all
     /// others, and each place is tried a few times, so there are finitely many.
     pub(super) fn unseen(&self) -> Option<(f64, usize)> {
-        let unseen: Vec<&(usize, Place)> = self
-            .floor
-            .iter()
-            .filter(|(_, place)| !self.is_seen(&place.position))
-            .collect();
-        let scene = self.scene;
-        let range = scene.units(UNSEEN_RANGE_M);
-        let cell = 2.0 * scene.free.resolution() * scene.meters_per_unit;
+        let (scene, unseen) = (self.scene, &self.unseen);
         let stride = unseen.len().div_ceil(MOST_CANDIDATES).max(1);
         let mut best: Option<(f64, f64, usize)> = None;
         for (index, place) in unseen.iter().step_by(stride) {
             if place.clearance < scene.units(SCAN_ROOM_M) || !self.is_new(&place.position) {
                 continue;
             }
-            let near = unseen
-                .iter()
-                .filter(|(_, other)| (other.position - place.position).norm() < range)
-                .count();
-            let area = near as f64 * cell * cell;
+            let area = self.unseen_near(&place.position);
             let worth = area / (place.way * scene.meters_per_unit + SCAN_WAY_M);
             let enough = area >= self.shared.config.exploration.least_unseen_m2;
             if enough && best.is_none_or(|(most, ..)| worth > most) {
@@ -138,13 +147,6 @@ impl<'a> Survey<'a> {
         })
     }
 
-    fn is_seen(&self, place: &Point3<f64>) -> bool {
-        let range = self.scene.units(SIGHT_M);
-        let sites = self.shared.atlas.sites().iter();
-        let mut near = sites.filter(|site| (site.position - place).norm() < range);
-        near.any(|site| self.scene.sees(&site.position, place))
-    }
-
     /// Whether a scan here would be a new one: far from other sites, and not flown to in vain again and again.
     fn is_new(&self, place: &Point3<f64>) -> bool {
         let exploration = &self.shared.config.exploration;
@@ -157,4 +159,11 @@ impl<'a> Survey<'a> {
             .count();
         !near_site && in_vain < exploration.failures
     }
+}
+
+/// Whether a scan saw this place.
+fn is_seen(shared: &Shared, scene: &Scene, place: &Point3<f64>) -> bool {
+    let range = scene.units(SIGHT_M);
+    let mut sites = shared.atlas.sites().iter();
+    sites.any(|site| (site.position - place).norm() < range && scene.sees(&site.position, place))
 }
