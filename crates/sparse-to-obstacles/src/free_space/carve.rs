@@ -11,9 +11,6 @@ use super::interpolate;
 use super::ray::Ray;
 use crate::vector::{Vec3, distance, dot, lerp, norm_squared, scale, sub};
 
-/// So many voxels in a row that the keyframe already saw through end the filling between its rays.
-const ENOUGH_KNOWN: usize = 3;
-
 pub(super) struct Carver<'a> {
     config: &'a FreeSpaceConfig,
     grid: &'a Grid,
@@ -52,40 +49,34 @@ impl<'a> Carver<'a> {
         }
         let end = lerp(ray.origin, ray.end, carved / length);
         let number = *self.rays;
-        self.follow(ray.origin, end, |voxel| {
-            voxel.cross(keyframe, number);
-            true
-        });
+        self.follow(ray.origin, end, |voxel| voxel.cross(keyframe, number));
         let widening = self.config.patch_half_angle.tan();
         if carved * widening > 0.5 * self.grid.resolution {
             self.widen(ray.origin, end, widening, keyframe);
         }
     }
 
-    /// Carves what lies between neighbouring rays of one keyframe.
+    /// Carves what lies between neighbouring rays of one keyframe: the voxels whose centres lie there.
     pub(super) fn carve_between(&mut self, rays: &[Ray], keyframe: KeyframeId) {
         if self.config.max_triangle_angle <= 0.0 {
             return;
         }
-        let config = self.config;
-        interpolate::between(rays, config, |places| {
-            for place in places {
-                // Backwards: what lies before voxels that this keyframe saw through is mostly known.
-                let mut known = 0;
-                self.follow(place.end, place.origin, |voxel| {
-                    known = if voxel.witness(keyframe) {
-                        0
-                    } else {
-                        known + 1
-                    };
-                    known < ENOUGH_KNOWN
-                });
+        let Some(panorama) = interpolate::between(rays, self.config) else {
+            return;
+        };
+        let (low, high) = panorama.extent();
+        for (first, indices) in self.grid.around(low, high, 0.0).rows(self.grid) {
+            let [x, y, z] = self.grid.centre(first);
+            for (step, voxel) in self.evidence[indices].iter_mut().enumerate() {
+                if panorama.sees_through([x, y, z + step as f64 * self.grid.resolution]) {
+                    voxel.witness(keyframe);
+                }
             }
-        });
+        }
     }
 
-    /// Marks the voxels along a segment for as long as `mark` holds.
-    fn follow(&mut self, from: Vec3, to: Vec3, mut mark: impl FnMut(&mut Evidence) -> bool) {
+    /// Marks the voxels along a segment.
+    fn follow(&mut self, from: Vec3, to: Vec3, mut mark: impl FnMut(&mut Evidence)) {
         let resolution = self.grid.resolution;
         let mut cell = self.grid.cell_of(from);
         let last = self.grid.cell_of(to);
@@ -110,9 +101,8 @@ impl<'a> Carver<'a> {
         let mut index = index as isize;
         let strides = self.grid.strides().map(|stride| stride as isize);
         for _ in 0..=left {
-            let goes_on = self.evidence.get_mut(index as usize).is_some_and(&mut mark);
-            if !goes_on {
-                return;
+            if let Some(voxel) = self.evidence.get_mut(index as usize) {
+                mark(voxel);
             }
             let mut axis = if next[0] <= next[1] { 0 } else { 1 };
             if next[2] < next[axis] {

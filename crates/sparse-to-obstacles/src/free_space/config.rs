@@ -46,6 +46,10 @@ pub struct FreeSpaceConfig {
     /// A voxel is free only where its log-odds are at most this. Default 0: as many rays must have gone
     /// through as their weight against the ends needs, so few wrong rays cannot open a seen surface.
     pub free_log_odds: f64,
+    /// A point is contradicted where its voxel is free and its log-odds are at most minus this. At least 0.
+    /// Default 8: twenty more crossing rays than its hits need. Fewer would also take points off walls that
+    /// rays graze. See [`FreeSpace::contradicts`](crate::FreeSpace::contradicts).
+    pub contradiction_log_odds: f64,
     /// Most voxels that the grid may hold; each costs 21 bytes. At least 1. Default 8 million (170 MB).
     pub max_voxels: usize,
 }
@@ -64,6 +68,7 @@ impl Default for FreeSpaceConfig {
             hit_log_odds: 0.85,
             miss_log_odds: 0.4,
             free_log_odds: 0.0,
+            contradiction_log_odds: 8.0,
             max_voxels: 8_000_000,
         }
     }
@@ -146,6 +151,13 @@ impl FreeSpaceConfig {
         )?;
         let free = self.free_log_odds.is_finite();
         check("free_log_odds", self.free_log_odds, free, "finite")?;
+        let contradiction = self.contradiction_log_odds >= 0.0;
+        check(
+            "contradiction_log_odds",
+            self.contradiction_log_odds,
+            contradiction,
+            "at least 0",
+        )?;
         check(
             "max_voxels",
             self.max_voxels as f64,

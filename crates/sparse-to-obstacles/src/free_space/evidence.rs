@@ -34,19 +34,17 @@ impl Evidence {
         self.witness(keyframe);
     }
 
-    /// Remembers a keyframe that saw through. Is it news, as far as can be known?
+    /// Remembers a keyframe that saw through.
     #[inline]
-    pub(super) fn witness(&mut self, keyframe: KeyframeId) -> bool {
+    pub(super) fn witness(&mut self, keyframe: KeyframeId) {
         for witness in &mut self.witnesses {
-            if *witness == keyframe {
-                return false;
-            }
             if *witness == NOBODY {
                 *witness = keyframe;
-                return true;
+            }
+            if *witness == keyframe {
+                return;
             }
         }
-        true
     }
 
     pub(super) fn end(&mut self) {

@@ -8,6 +8,7 @@ mod evidence;
 mod frontier;
 mod grid;
 mod interpolate;
+mod panorama;
 mod query;
 mod ray;
 mod surface;

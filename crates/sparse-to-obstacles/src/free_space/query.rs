@@ -5,6 +5,7 @@
 //! decide, a piece of a few voxels' length is tested exactly against every voxel and point around it.
 
 use super::FreeSpace;
+use super::grid::Cell;
 use crate::hull::separation;
 use crate::point::is_finite;
 use crate::vector::{Vec3, distance, lerp};
@@ -54,6 +55,54 @@ impl FreeSpace {
         } else {
             VoxelState::Unknown
         }
+    }
+
+    /// Have many more rays gone through the place of a point than ended there? Then the point is wrong, or
+    /// far off, and no obstacle: pass only points that are not contradicted as surface and to
+    /// [`ObstacleSet`](crate::ObstacleSet). See [`FreeSpaceConfig::contradiction_log_odds`](crate::FreeSpaceConfig::contradiction_log_odds).
+    #[must_use]
+    pub fn contradicts(&self, point: [f64; 3]) -> bool {
+        let index = is_finite(point)
+            .then(|| self.grid.index_of(point))
+            .flatten();
+        index.is_some_and(|index| {
+            let config = &self.config;
+            self.free[index]
+                && self.evidence[index].log_odds(config) <= -config.contradiction_log_odds
+        })
+    }
+
+    /// The centres of the voxels in which a ball of this radius can be, in the order of their coordinates:
+    /// every voxel whose centre lies within the radius is proven free, and no surface point is nearer than
+    /// the larger of the radius and [`clearance`](crate::FreeSpaceConfig::clearance).
+    ///
+    /// This is the rule by which proven free space is measured and drawn. It asks for the centres of voxels;
+    /// [`motion_is_free`](Self::motion_is_free) asks for every voxel that the ball touches, and so for
+    /// up to a voxel more. A radius that is not finite or negative fits nowhere.
+    #[must_use]
+    pub fn places(&self, radius: f64) -> Vec<[f64; 3]> {
+        if !(radius >= 0.0 && radius.is_finite()) {
+            return Vec::new();
+        }
+        let clearance = self.config.clearance.max(radius);
+        let fits = |centre: &Vec3| {
+            self.centres_are_free(*centre, radius)
+                && self.points_are_away(*centre, *centre, clearance)
+        };
+        self.voxel_centers().into_iter().filter(fits).collect()
+    }
+
+    /// Is every voxel free whose centre lies within the radius?
+    fn centres_are_free(&self, place: Vec3, radius: f64) -> bool {
+        let around = self.grid.around(place, place, radius);
+        let free = |cell: Cell, index: usize| {
+            self.free[index] || distance(self.grid.centre(cell), place) > radius
+        };
+        // Nothing beyond the grid is free.
+        !around.is_clipped
+            && around.rows(&self.grid).all(|([x, y, z], indices)| {
+                (z..).zip(indices).all(|(z, index)| free([x, y, z], index))
+            })
     }
 
     /// Can a ball be here? As [`motion_is_free`](Self::motion_is_free) without a motion.

@@ -408,3 +408,58 @@ fn balls_beyond_the_reach_of_the_distance_field_are_exact() {
     assert!(!space.motion_is_free([0.0, 0.02, 0.02], [2.0, 0.02, 0.02], 1.1));
     assert!(!space.motion_is_free([0.0, 0.02, 0.02], [2.3, 0.02, 0.02], 0.9));
 }
+
+#[test]
+fn a_point_that_many_rays_pass_is_contradicted() {
+    let lone = [1.05, 0.05, 0.05];
+    let rays = |count: u32| {
+        (0..count).map(|i| Ray {
+            origin: [0.0, 0.05, 0.01 + 0.001 * f64::from(i)],
+            end: [3.0, 0.05, 0.05],
+        })
+    };
+    let hit = Ray {
+        origin: [0.0, 0.0, 0.0],
+        end: lone,
+    };
+    for (through, contradicted) in [(10, false), (30, true)] {
+        let rays = rays(through).chain([hit]);
+        let space = FreeSpace::from_rays(rays, &NOTHING, &config()).unwrap();
+        assert_eq!(space.contradicts(lone), contradicted, "{through} rays");
+        assert!(
+            !space.contradicts([1.05, 0.55, 0.05]),
+            "nobody looked there"
+        );
+        assert!(!space.contradicts([f64::NAN; 3]) && !space.contradicts([1e300; 3]));
+    }
+}
+
+#[test]
+fn places_keep_their_distance() {
+    let (rays, points) = scan(5, 900);
+    let space = FreeSpace::from_rays(rays, &points, &FreeSpaceConfig::default()).unwrap();
+    let places = space.places(0.15);
+    assert!(!places.is_empty() && places.len() < space.voxel_count());
+    for place in &places {
+        assert!(points.iter().all(|&point| distance(point, *place) >= 0.2));
+        for step in [-0.1, 0.1] {
+            for axis in 0..3 {
+                let mut beside = *place;
+                beside[axis] += step;
+                assert_ne!(space.state(beside), VoxelState::Unknown);
+            }
+        }
+    }
+    // What the ball sweeps exactly is asked for more voxels.
+    let fits = |place: &Vec3| space.ball_is_free(*place, 0.15);
+    assert!(
+        space
+            .voxel_centers()
+            .iter()
+            .filter(|p| fits(p))
+            .all(|p| places.contains(p))
+    );
+    for radius in [1e9, f64::INFINITY, f64::NAN, -1.0] {
+        assert!(space.places(radius).is_empty());
+    }
+}

@@ -39,4 +39,10 @@ pub enum ObstacleError {
         /// Index into the rays.
         index: usize,
     },
+    /// A ball has a centre or radius that is not finite, or a negative radius.
+    #[error("a ball of radius {radius}: centre and radius must be finite, the radius at least 0")]
+    Ball {
+        /// The radius given.
+        radius: f64,
+    },
 }

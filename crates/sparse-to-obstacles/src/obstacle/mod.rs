@@ -1,6 +1,7 @@
 //! A set of convex obstacles with exact queries for a moving ball.
 
 mod bvh;
+mod clear;
 mod config;
 mod error;
 mod export;

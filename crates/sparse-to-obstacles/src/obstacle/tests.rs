@@ -299,3 +299,27 @@ fn an_update_takes_over_what_did_not_change() {
     set.update(&none, &[], &config, &mut rng).unwrap();
     assert!(set.is_empty());
 }
+
+#[test]
+fn where_the_drone_is_no_hull_stays() {
+    let post = |x: f64| [[x, 0.0, -1.0], [x, 0.0, 0.0], [x, 0.0, 1.0], [x, 0.2, 0.5]];
+    let points: Vec<[f64; 3]> = post(0.1).into_iter().chain(post(50.0)).collect();
+    let mut rng = Pcg64::seed_from_u64(1);
+    let config = ObstacleConfig::with_clusters(2);
+    let mut set = ObstacleSet::from_points(&points, &config, &mut rng).unwrap();
+    let (here, away) = ([0.0; 3], [1.0, 0.0, 0.0]);
+    assert!(!set.motion_is_free(here, away, 0.15));
+    set.clear_ball(here, 0.15).unwrap();
+    assert!(set.motion_is_free(here, [-1.0, 0.0, 0.0], 0.15));
+    // One point lay in the ball, the other three of its hull stand alone now.
+    assert_eq!(set.len(), 4);
+    assert!(!set.motion_is_free([0.0, 0.0, 0.9], [1.0, 0.0, 0.9], 0.15));
+    assert!(!set.motion_is_free([49.0, 0.0, 0.3], [51.0, 0.0, 0.3], 0.15));
+    let before = set.obstacles().to_vec();
+    set.clear_ball([2.5, 0.0, 0.0], 0.15).unwrap();
+    assert_eq!(set.obstacles().len(), before.len());
+    assert!(set.clear_ball([f64::NAN; 3], 0.1).is_err() && set.clear_ball(here, -1.0).is_err());
+    // A map that grows afterwards is clustered anew.
+    set.update(&points, &[], &config, &mut rng).unwrap();
+    assert_eq!(set.len(), 2);
+}
