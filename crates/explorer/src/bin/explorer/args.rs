@@ -201,9 +201,12 @@ pub(crate) struct Obstacles {
     /// Write the hulls as a Wavefront mesh.
     #[arg(short, long, value_name = "HULLS.obj")]
     pub(crate) output: Option<PathBuf>,
-    /// Write the centres of the voxels proven free; needs observations.
+    /// Write the centres of the proven-free voxels in which the body fits; needs observations.
     #[arg(long, value_name = "FREE.ply")]
     pub(crate) proven_free: Option<PathBuf>,
+    /// Radius of the body that must fit, map units; as long as 0.15 m by default, 0 for all that was seen through.
+    #[arg(long, value_name = "r", value_parser = not_negative)]
+    pub(crate) radius: Option<f64>,
     /// Which way is up, for the picture; told by the keyframes, else 0,0,1.
     #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = direction)]
     pub(crate) up: Option<Vector>,
@@ -222,7 +225,7 @@ pub(crate) struct Plan {
     /// Radius of the body that must fit, map units; as long as 0.15 m by default.
     #[arg(long, value_name = "r", value_parser = positive)]
     pub(crate) radius: Option<f64>,
-    #[arg(long, value_enum, default_value_t = Planner::Rrt)]
+    #[arg(long, value_enum, default_value_t = Planner::RrtConnect)]
     pub(crate) planner: Planner,
     #[arg(long, value_enum, default_value_t = Refiner::Dag)]
     pub(crate) refine: Refiner,
@@ -232,6 +235,9 @@ pub(crate) struct Plan {
     /// Clusters to make; one for every 12 kept points by default.
     #[arg(long, value_name = "K")]
     pub(crate) clusters: Option<usize>,
+    /// Plan again for a steadier time, of which the median is told.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) repeat: u32,
     /// Which way is up, for the picture; told by the keyframes, else 0,0,1.
     #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = direction)]
     pub(crate) up: Option<Vector>,
@@ -249,8 +255,10 @@ pub(crate) enum Planner {
 /// How the path is shortened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Refiner {
-    /// The shortest path over the path's own vertices.
+    /// The shortest path over the path's vertices and over cuts of its corners.
     Dag,
+    /// The shortest path over the path's own vertices alone, as the paper has it.
+    Vertices,
     /// Tightened like a rope.
     Rope,
     /// The farthest vertex in sight, again and again.
@@ -317,6 +325,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a finite number above 0".to_owned()),
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("must be a finite number, at least 0".to_owned()),
     }
 }
 

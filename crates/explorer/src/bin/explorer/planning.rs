@@ -6,32 +6,51 @@ use rrt_refine::{
     Bounds, MotionValidator, Path, PlanError, Refined, RrtConfig, RrtStarConfig, refine, rrt,
     rrt_connect, rrt_star,
 };
-use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Space};
+use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Space, kmeans};
 
 use crate::args::{Planner, Refiner};
 use crate::failure::Failure;
 use crate::input::LoadedMap;
+use crate::stopwatch::timed;
 
 /// Kept points to a cluster where K is not given.
 const POINTS_PER_CLUSTER: usize = 12;
 /// Radius of the body where it is not given, metres.
 pub(crate) const RADIUS_M: f64 = 0.15;
 /// Longest edge of the tree, metres.
-const STEP_M: f64 = 0.75;
+const STEP_M: f64 = 1.5;
 /// Space around the map's points in which paths may lead, metres.
 const ROOM_M: f64 = 0.5;
 
 /// Share of the points on each side of each axis that paths do not lead around.
 const OUTERMOST: f64 = 0.01;
 
+/// Distance that exported places keep from every point, metres: 0.2 and a quarter of a voxel, since a
+/// place stands for a whole voxel.
+const EXPORT_CLEARANCE_M: f64 = 0.22;
+/// Edge of a voxel where free space is exported and measured, metres.
+const EXPORT_VOXEL_M: f64 = 0.08;
+/// Widest gap between two rays that is exported as seen through, rad: 12 degrees.
+const EXPORT_GAP: f64 = 0.21;
+
 /// Everything that stands in the way, and what was seen through.
 #[derive(Debug)]
 pub(crate) struct Surroundings {
     pub(crate) obstacles: ObstacleSet,
     pub(crate) free: Option<FreeSpace>,
+    pub(crate) seconds: Seconds,
 }
 
-/// Clusters the points at these indices; `clusters` must not exceed their number.
+/// What building took, seconds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seconds {
+    pub(crate) kmeans: f64,
+    pub(crate) hulls: f64,
+    pub(crate) free_space: f64,
+}
+
+/// What a planner needs: the points at these indices without those that rays contradict, as obstacles,
+/// and proven-free space.
 pub(crate) fn surroundings(
     loaded: &LoadedMap,
     kept: &[usize],
@@ -39,29 +58,100 @@ pub(crate) fn surroundings(
     units_per_meter: f64,
     seed: u64,
 ) -> Result<Surroundings, Failure> {
-    let points: Vec<[f64; 3]> = kept
-        .iter()
-        .filter_map(|index| loaded.points.get(*index).copied())
-        .collect();
+    let mut points = at(&loaded.points, kept);
     let clusters = check_clusters(clusters, points.len())?;
-    let mut rng = Pcg64::seed_from_u64(seed);
-    let config = ObstacleConfig::with_clusters(clusters);
-    let obstacles = ObstacleSet::from_points(&points, &config, &mut rng)
-        .map_err(|error| Failure::new(error, "choose another --clusters"))?;
-    let free = match loaded.map.has_observations() {
-        true => {
-            // Hulls keep the body clear of obstacles; more distance to single points would close doors.
-            let config = FreeSpaceConfig {
-                clearance: 0.1,
-                ..FreeSpaceConfig::default()
-            }
-            .scaled(units_per_meter);
-            let free = FreeSpace::from_rays(loaded.rays(kept.iter().copied()), &points, &config);
-            Some(free.map_err(|error| Failure::new(error, "give the map's unit with --scale"))?)
-        }
-        false => None,
+    // Hulls keep the body clear of obstacles; more distance to single points would close doors.
+    let config = FreeSpaceConfig {
+        clearance: 0.1,
+        ..FreeSpaceConfig::default()
     };
-    Ok(Surroundings { obstacles, free })
+    let config = config.scaled(units_per_meter);
+    let (free, free_space) = timed(|| {
+        let nothing: [[f64; 3]; 0] = [];
+        let mut free = prove(loaded, kept, &nothing, &config)?;
+        if let Some(free) = &mut free {
+            points.retain(|point| !free.contradicts(*point));
+            free.insert([], &points).map_err(Failure::internal)?;
+        }
+        Ok(free)
+    });
+    let free = free?;
+    let (obstacles, kmeans, hulls) = hulls(&points, clusters.min(points.len()), seed)?;
+    Ok(Surroundings {
+        obstacles,
+        free,
+        seconds: Seconds {
+            kmeans,
+            hulls,
+            free_space,
+        },
+    })
+}
+
+/// What `explorer obstacles` measures: all points as obstacles, and free space that keeps a distance
+/// from every one of them.
+pub(crate) fn measured_surroundings(
+    loaded: &LoadedMap,
+    clusters: usize,
+    units_per_meter: f64,
+    seed: u64,
+) -> Result<Surroundings, Failure> {
+    let points = &loaded.points;
+    let clusters = check_clusters(Some(clusters), points.len())?;
+    let config = FreeSpaceConfig {
+        resolution: EXPORT_VOXEL_M,
+        clearance: EXPORT_CLEARANCE_M,
+        max_triangle_angle: EXPORT_GAP,
+        ..FreeSpaceConfig::default()
+    };
+    let config = config.scaled(units_per_meter);
+    let all: Vec<usize> = (0..points.len()).collect();
+    let (free, free_space) = timed(|| prove(loaded, &all, points, &config));
+    let free = free?;
+    let (obstacles, kmeans, hulls) = hulls(points, clusters, seed)?;
+    Ok(Surroundings {
+        obstacles,
+        free,
+        seconds: Seconds {
+            kmeans,
+            hulls,
+            free_space,
+        },
+    })
+}
+
+/// The obstacles, and the seconds that K-means and the hulls took.
+fn hulls(
+    points: &[[f64; 3]],
+    clusters: usize,
+    seed: u64,
+) -> Result<(ObstacleSet, f64, f64), Failure> {
+    if clusters == 0 {
+        return Ok((ObstacleSet::default(), 0.0, 0.0));
+    }
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let config = ObstacleConfig::with_clusters(clusters).kmeans;
+    let advice = "choose another --clusters";
+    let (clustering, seconds) = timed(|| kmeans(points, &config, &mut rng));
+    let clustering = clustering.map_err(|error| Failure::new(error, advice))?;
+    let (set, hull_seconds) = timed(|| ObstacleSet::from_clustering(points, &clustering));
+    let set = set.map_err(|error| Failure::new(error, advice))?;
+    Ok((set, seconds, hull_seconds))
+}
+
+/// Proven-free space, for a map with observations.
+fn prove(
+    loaded: &LoadedMap,
+    kept: &[usize],
+    surface: &[[f64; 3]],
+    config: &FreeSpaceConfig,
+) -> Result<Option<FreeSpace>, Failure> {
+    if !loaded.map.has_observations() {
+        return Ok(None);
+    }
+    FreeSpace::from_rays(loaded.rays(kept.iter().copied()), surface, config)
+        .map(Some)
+        .map_err(|error| Failure::new(error, "give the map's unit with --scale"))
 }
 
 fn check_clusters(clusters: Option<usize>, points: usize) -> Result<usize, Failure> {
@@ -80,6 +170,22 @@ fn check_clusters(clusters: Option<usize>, points: usize) -> Result<usize, Failu
 }
 
 impl Surroundings {
+    /// The agent is there with this radius, so that place is free whatever points and rays say.
+    pub(crate) fn open(&mut self, place: [f64; 3], radius: f64) -> Result<(), Failure> {
+        let cleared = self.obstacles.clear_ball(place, radius);
+        cleared.map_err(Failure::internal)?;
+        match &mut self.free {
+            Some(free) => free.add_ball(place, radius).map_err(Failure::internal),
+            None => Ok(()),
+        }
+    }
+
+    /// Where a body of this radius fits in proven-free space.
+    pub(crate) fn places(&self, radius: f64) -> Vec<[f64; 3]> {
+        let free = self.free.as_ref();
+        free.map(|free| free.places(radius)).unwrap_or_default()
+    }
+
     /// The space that paths may use: proven-free where there is any proof and it is asked for.
     pub(crate) fn space(&self, proven: bool) -> Result<Space<'_>, Failure> {
         match (&self.free, proven) {
@@ -109,6 +215,18 @@ pub(crate) struct Question<'a> {
     pub(crate) seed: u64,
 }
 
+impl Question<'_> {
+    /// Where paths may lead: the box of the points, less the outermost of each axis, and of both ends.
+    pub(crate) fn bounds(&self, points: &[[f64; 3]]) -> Result<Bounds<3>, Failure> {
+        let mut corners = vec![self.from, self.to];
+        for tail in [OUTERMOST, 1.0 - OUTERMOST] {
+            corners.extend(quantiles(points, tail));
+        }
+        Bounds::around(&corners, ROOM_M * self.units_per_meter)
+            .map_err(|error| Failure::new(error, "check the map's coordinates"))
+    }
+}
+
 /// A planner's answer.
 #[derive(Debug)]
 pub(crate) struct Answer {
@@ -119,7 +237,7 @@ pub(crate) struct Answer {
 }
 
 /// Plans and refines. A start or goal that is not free is an error; no path within the budget is not.
-pub(crate) fn plan(question: &Question<'_>, points: &[[f64; 3]]) -> Result<Answer, Failure> {
+pub(crate) fn plan(question: &Question<'_>, bounds: &Bounds<3>) -> Result<Answer, Failure> {
     let &Question {
         from,
         to,
@@ -129,7 +247,6 @@ pub(crate) fn plan(question: &Question<'_>, points: &[[f64; 3]]) -> Result<Answe
         ..
     } = question;
     let free = |a: &[f64; 3], b: &[f64; 3]| space.motion_is_free(*a, *b, radius);
-    let bounds = bounds(question, points)?;
     let config = RrtConfig {
         step_length: STEP_M * units_per_meter,
         ..RrtConfig::default()
@@ -144,10 +261,10 @@ pub(crate) fn plan(question: &Question<'_>, points: &[[f64; 3]]) -> Result<Answe
     };
     let mut rng = Pcg64::seed_from_u64(question.seed);
     let found = match question.planner {
-        Planner::Rrt => rrt(from, to, &bounds, &free, &config, &mut rng),
-        Planner::RrtConnect => rrt_connect(from, to, &bounds, &free, &config, &mut rng),
-        Planner::RrtStar => rrt_star(from, to, &bounds, &free, &star, &mut rng),
-        Planner::InformedRrtStar => rrt_star(from, to, &bounds, &free, &informed, &mut rng),
+        Planner::Rrt => rrt(from, to, bounds, &free, &config, &mut rng),
+        Planner::RrtConnect => rrt_connect(from, to, bounds, &free, &config, &mut rng),
+        Planner::RrtStar => rrt_star(from, to, bounds, &free, &star, &mut rng),
+        Planner::InformedRrtStar => rrt_star(from, to, bounds, &free, &informed, &mut rng),
     };
     let found = found.map_err(|error| refusal(&error))?;
     let Some(raw) = found.path else {
@@ -172,7 +289,11 @@ fn refine_path(
 ) -> Result<Option<Refined<3>>, Failure> {
     Ok(match question.refiner {
         Refiner::None => None,
-        Refiner::Dag => Some(refine::dag(raw, free)),
+        Refiner::Dag => {
+            let config = refine::TautConfig::default();
+            Some(refine::taut(raw, free, &config).map_err(Failure::internal)?)
+        }
+        Refiner::Vertices => Some(refine::dag(raw, free)),
         Refiner::Greedy => Some(refine::greedy(raw, free)),
         Refiner::Rope => {
             let max_step = 0.1 * question.units_per_meter;
@@ -185,14 +306,10 @@ fn refine_path(
     })
 }
 
-/// The box of the points, less the outermost of each axis, and of both ends of the path.
-fn bounds(question: &Question<'_>, points: &[[f64; 3]]) -> Result<Bounds<3>, Failure> {
-    let mut corners = vec![question.from, question.to];
-    for tail in [OUTERMOST, 1.0 - OUTERMOST] {
-        corners.extend(quantiles(points, tail));
-    }
-    Bounds::around(&corners, ROOM_M * question.units_per_meter)
-        .map_err(|error| Failure::new(error, "check the map's coordinates"))
+/// The points at these indices.
+pub(crate) fn at(points: &[[f64; 3]], indices: &[usize]) -> Vec<[f64; 3]> {
+    let points = indices.iter().map(|index| points.get(*index).copied());
+    points.flatten().collect()
 }
 
 /// A quantile of each axis; none of no points.

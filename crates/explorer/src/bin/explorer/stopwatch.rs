@@ -12,6 +12,18 @@ pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (result, begin.elapsed().as_secs_f64())
 }
 
+/// Runs `work` so many times, at least once; the last result, and the median of the seconds.
+pub(crate) fn timed_median<T>(times: u32, mut work: impl FnMut() -> T) -> (T, f64) {
+    let (mut result, first) = timed(&mut work);
+    let mut seconds = vec![first];
+    for _ in 1..times {
+        let (again, took) = timed(&mut work);
+        result = again;
+        seconds.push(took);
+    }
+    (result, median(seconds))
+}
+
 #[expect(
     clippy::disallowed_methods,
     reason = "the command reports how long its work takes"

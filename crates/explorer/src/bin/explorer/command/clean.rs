@@ -8,6 +8,7 @@ use crate::args::{Clean, CleanMethod, Output, Vector};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::{deliver, write_file};
+use crate::planning::at;
 use crate::plot::{Figure, TopView, color, scene};
 use crate::progress::Progress;
 use crate::stopwatch::{median, timed};
@@ -129,14 +130,6 @@ fn minimax(
         certificate: Some(certificate),
         kept_indices: removal.kept,
     })
-}
-
-/// The points at these places.
-pub(crate) fn at(points: &[[f64; 3]], indices: &[usize]) -> Vec<[f64; 3]> {
-    indices
-        .iter()
-        .filter_map(|index| points.get(*index).copied())
-        .collect()
 }
 
 /// "kept 4,239 of 4,460 points (95.0 %)".

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::clean::{self, CleanReport, at};
+use super::clean::{self, CleanReport};
 use super::exits::{self, ExitsReport};
 use super::obstacles::{self, ObstaclesReport};
 use super::plan::{self, PlanReport};
@@ -10,7 +10,7 @@ use crate::args::{CleanMethod, ExitRule, Output, Pipeline, Planner, Refiner};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::deliver;
-use crate::planning::{Question, RADIUS_M, Surroundings, surroundings};
+use crate::planning::{Question, RADIUS_M, Surroundings, at, surroundings};
 use crate::plot::{Figure, TopView, color, scene};
 use crate::progress::Progress;
 use crate::stopwatch::timed;
@@ -115,18 +115,14 @@ fn pipeline(
     });
     let exits = exits?;
     progress.step("building obstacles");
-    let (built, seconds) = timed(|| {
-        let kept = &clean.kept_indices;
-        let mut built = surroundings(loaded, kept, arguments.clusters, units, seed)?;
-        if let Some(free) = &mut built.free {
-            // The agent is where it is, so that place is free.
-            free.add_ball(position, 1.5 * radius)
-                .map_err(Failure::internal)?;
-        }
-        Ok(built)
-    });
-    let built = built?;
-    let obstacles = obstacles::report(&built, seconds);
+    let kept = &clean.kept_indices;
+    let mut built = surroundings(loaded, kept, arguments.clusters, units, seed)?;
+    if let Some(free) = &mut built.free {
+        // The agent is where it is, so that place is free.
+        free.add_ball(position, 1.5 * radius)
+            .map_err(Failure::internal)?;
+    }
+    let obstacles = obstacles::report(&built, built.places(radius).len());
     progress.step("planning");
     let proven = built.free.is_some();
     let radius = radius_at(&built, position, radius);
@@ -192,12 +188,13 @@ impl Approach<'_> {
                     to,
                     radius: plan.radius,
                     space,
-                    planner: Planner::Rrt,
+                    planner: Planner::RrtConnect,
                     refiner: Refiner::Dag,
                     units_per_meter: self.units,
                     seed: self.seed,
                 };
-                plan.take(crate::planning::plan(&question, self.points)?, self.built);
+                let bounds = question.bounds(self.points)?;
+                plan.take(crate::planning::plan(&question, &bounds)?, self.built);
                 if !plan.path.is_empty() {
                     return Ok(Some((rank, share)));
                 }

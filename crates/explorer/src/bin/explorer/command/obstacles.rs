@@ -8,10 +8,9 @@ use crate::args::{Obstacles, Output, Vector};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::{deliver, write_file};
-use crate::planning::{Surroundings, surroundings};
+use crate::planning::{RADIUS_M, Seconds, Surroundings, measured_surroundings};
 use crate::plot::{Figure, Layer, TopView, color, scene};
 use crate::progress::Progress;
-use crate::stopwatch::timed;
 
 /// The command's JSON object.
 #[derive(Debug, Clone, Serialize)]
@@ -22,60 +21,69 @@ pub(crate) struct ObstaclesReport {
     pub(crate) degenerate: usize,
     /// Sum of squared distances to the clusters' centres, squared map units.
     pub(crate) inertia: f64,
-    /// Voxels seen through; 0 without observations.
+    /// Proven-free voxels in which the body fits; 0 without observations.
     pub(crate) proven_free_voxels: usize,
+    /// All voxels seen through.
+    pub(crate) seen_through_voxels: usize,
     /// Edge of a voxel, map units; none without observations.
     pub(crate) resolution: Option<f64>,
+    /// All of the work, without reading the file: K-means, hulls and free space, which follow one by one.
     pub(crate) seconds: f64,
+    pub(crate) kmeans_seconds: f64,
+    pub(crate) hulls_seconds: f64,
+    pub(crate) free_space_seconds: f64,
 }
 
 pub(crate) fn run(arguments: &Obstacles, output: &Output) -> Result<(), Failure> {
     let progress = Progress::begin("reading the map");
     let loaded = input::load(&arguments.input)?;
     progress.step("building obstacles");
-    let all: Vec<usize> = (0..loaded.points.len()).collect();
-    let units = loaded.units_per_meter(None);
-    let (built, seconds) =
-        timed(|| surroundings(&loaded, &all, Some(arguments.clusters), units, output.seed));
-    let built = built?;
+    let units = loaded.cautious_units_per_meter(None);
+    let built = measured_surroundings(&loaded, arguments.clusters, units, output.seed)?;
+    let radius = arguments.radius.unwrap_or(RADIUS_M * units);
+    let places = built.places(radius);
     drop(progress);
     if let Some(path) = &arguments.output {
         write_file(path, |file| built.obstacles.write_obj(file))?;
     }
     if let Some(path) = &arguments.proven_free {
         built.space(true)?;
-        let centers = built
-            .free
-            .as_ref()
-            .map(FreeSpace::voxel_centers)
-            .unwrap_or_default();
         let map = Map {
             scale: loaded.map.scale,
-            ..Map::from_positions(centers)
+            ..Map::from_positions(places.iter().copied())
         };
         write_file(path, |file| write_ply(&map, file))?;
     }
-    let report = report(&built, seconds);
+    let report = report(&built, places.len());
     deliver(output, &report, &text(&report), || {
         figure(&loaded, &built, &report, arguments.up)
     })
 }
 
-pub(crate) fn report(built: &Surroundings, seconds: f64) -> ObstaclesReport {
+pub(crate) fn report(built: &Surroundings, proven_free_voxels: usize) -> ObstaclesReport {
+    let Seconds {
+        kmeans,
+        hulls,
+        free_space,
+    } = built.seconds;
     ObstaclesReport {
         obstacles: built.obstacles.len(),
         degenerate: built.obstacles.degenerate_count(),
         inertia: built.obstacles.inertia(),
-        proven_free_voxels: built.free.as_ref().map_or(0, FreeSpace::voxel_count),
+        proven_free_voxels,
+        seen_through_voxels: built.free.as_ref().map_or(0, FreeSpace::voxel_count),
         resolution: built.free.as_ref().map(FreeSpace::resolution),
-        seconds,
+        seconds: kmeans + hulls + free_space,
+        kmeans_seconds: kmeans,
+        hulls_seconds: hulls,
+        free_space_seconds: free_space,
     }
 }
 
 pub(crate) fn text(report: &ObstaclesReport) -> String {
     let free = match report.resolution {
         Some(edge) => format!(
-            "{} voxels of {edge:.3} map units proven free",
+            "{} voxels of {edge:.3} map units proven free for the body",
             report.proven_free_voxels
         ),
         None => "no observations, so nothing is proven free".to_owned(),

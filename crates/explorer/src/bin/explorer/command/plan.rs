@@ -2,18 +2,18 @@
 
 use serde::Serialize;
 
-use super::clean::{at, clean};
+use super::clean::clean;
 use super::obstacles;
 use crate::args::{CleanMethod, Output, Plan, SpaceChoice};
 use crate::failure::Failure;
 use crate::input;
 use crate::output::deliver;
 use crate::planning::{
-    Answer, Question, RADIUS_M, Surroundings, min_clearance, plan, surroundings,
+    Answer, Question, RADIUS_M, Surroundings, at, min_clearance, plan, surroundings,
 };
 use crate::plot::{Figure, TopView, scene};
 use crate::progress::Progress;
-use crate::stopwatch::timed;
+use crate::stopwatch::timed_median;
 
 /// The command's JSON object; lengths in map units, without a path empty and none.
 #[derive(Debug, Clone, Serialize)]
@@ -77,15 +77,18 @@ pub(crate) fn run(arguments: &Plan, output: &Output) -> Result<(), Failure> {
     progress.step("removing outliers");
     let cleaned = clean(&loaded, CleanMethod::Submodular, None, 1)?;
     progress.step("building obstacles");
-    let units = loaded.units_per_meter(Some(arguments.from));
+    let units = loaded.cautious_units_per_meter(Some(arguments.from));
     let kept = &cleaned.kept_indices;
-    let built = surroundings(&loaded, kept, arguments.clusters, units, output.seed)?;
+    let mut built = surroundings(&loaded, kept, arguments.clusters, units, output.seed)?;
     progress.step("planning");
     let proven = match arguments.space {
         Some(choice) => choice == SpaceChoice::ProvenFree,
         None => built.free.is_some(),
     };
     let radius = arguments.radius.unwrap_or(RADIUS_M * units);
+    if proven {
+        built.open(arguments.from, radius)?;
+    }
     let question = Question {
         from: arguments.from,
         to: arguments.to,
@@ -97,7 +100,8 @@ pub(crate) fn run(arguments: &Plan, output: &Output) -> Result<(), Failure> {
         seed: output.seed,
     };
     let points = at(&loaded.points, kept);
-    let (answer, seconds) = timed(|| plan(&question, &points));
+    let bounds = question.bounds(&points)?;
+    let (answer, seconds) = timed_median(arguments.repeat, || plan(&question, &bounds));
     let mut report = PlanReport::empty("not-found", radius, proven);
     report.seconds = seconds;
     report.take(answer?, &built);
