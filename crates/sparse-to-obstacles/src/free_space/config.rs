@@ -90,80 +90,45 @@ impl FreeSpaceConfig {
     /// The first field that is out of range, with its value.
     pub fn validate(&self) -> Result<(), FreeSpaceError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
+        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
         let check = |name, value, ok, range| {
-            if ok {
-                Ok(())
-            } else {
-                Err(FreeSpaceError::OutOfRange { name, value, range })
-            }
+            let error = FreeSpaceError::OutOfRange { name, value, range };
+            if ok { Ok(()) } else { Err(error) }
         };
-        check(
-            "resolution",
-            self.resolution,
-            positive(self.resolution),
-            "above 0",
-        )?;
-        let margin = (0.0..1.0).contains(&self.range_margin);
-        check(
-            "range_margin",
-            self.range_margin,
-            margin,
-            "from 0 to below 1",
-        )?;
-        check(
-            "max_range",
-            self.max_range,
-            positive(self.max_range),
-            "above 0",
-        )?;
-        let keyframes = (1..=4).contains(&self.min_keyframes);
+        let value = self.resolution;
+        check("resolution", value, positive(value), "above 0")?;
+        let value = self.range_margin;
+        let ok = (0.0..1.0).contains(&value);
+        check("range_margin", value, ok, "from 0 to below 1")?;
+        let value = self.max_range;
+        check("max_range", value, positive(value), "above 0")?;
+        let ok = (1..=4).contains(&self.min_keyframes);
         check(
             "min_keyframes",
             self.min_keyframes as f64,
-            keyframes,
+            ok,
             "from 1 to 4",
         )?;
-        let clearance = self.clearance >= 0.0 && self.clearance.is_finite();
-        check("clearance", self.clearance, clearance, "at least 0")?;
-        let cone = (0.0..0.2).contains(&self.patch_half_angle);
-        check(
-            "patch_half_angle",
-            self.patch_half_angle,
-            cone,
-            "from 0 to below 0.2",
-        )?;
-        let angle = (0.0..=1.0).contains(&self.max_triangle_angle);
-        check(
-            "max_triangle_angle",
-            self.max_triangle_angle,
-            angle,
-            "from 0 to 1",
-        )?;
-        let ratio = self.max_depth_ratio >= 1.0;
-        check("max_depth_ratio", self.max_depth_ratio, ratio, "at least 1")?;
-        let hit = self.hit_log_odds >= 0.0 && self.hit_log_odds.is_finite();
-        check("hit_log_odds", self.hit_log_odds, hit, "at least 0")?;
-        check(
-            "miss_log_odds",
-            self.miss_log_odds,
-            positive(self.miss_log_odds),
-            "above 0",
-        )?;
-        let free = self.free_log_odds.is_finite();
-        check("free_log_odds", self.free_log_odds, free, "finite")?;
-        let contradiction = self.contradiction_log_odds >= 0.0;
-        check(
-            "contradiction_log_odds",
-            self.contradiction_log_odds,
-            contradiction,
-            "at least 0",
-        )?;
-        check(
-            "max_voxels",
-            self.max_voxels as f64,
-            self.max_voxels > 0,
-            "at least 1",
-        )
+        let value = self.clearance;
+        check("clearance", value, not_negative(value), "at least 0")?;
+        let value = self.patch_half_angle;
+        let ok = (0.0..0.2).contains(&value);
+        check("patch_half_angle", value, ok, "from 0 to below 0.2")?;
+        let value = self.max_triangle_angle;
+        let ok = (0.0..=1.0).contains(&value);
+        check("max_triangle_angle", value, ok, "from 0 to 1")?;
+        let value = self.max_depth_ratio;
+        check("max_depth_ratio", value, value >= 1.0, "at least 1")?;
+        let value = self.hit_log_odds;
+        check("hit_log_odds", value, not_negative(value), "at least 0")?;
+        let value = self.miss_log_odds;
+        check("miss_log_odds", value, positive(value), "above 0")?;
+        let value = self.free_log_odds;
+        check("free_log_odds", value, value.is_finite(), "finite")?;
+        let value = self.contradiction_log_odds;
+        check("contradiction_log_odds", value, value >= 0.0, "at least 0")?;
+        let ok = self.max_voxels > 0;
+        check("max_voxels", self.max_voxels as f64, ok, "at least 1")
     }
 
     /// The end of a ray, or the place on it at `max_range` where that is nearer.
