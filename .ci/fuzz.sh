@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Any bytes on any port of the drone's protocols: each fuzz target for 60 seconds (or the number given), where nightly Rust and
-# cargo-fuzz are present. The properties of the same parsers run in the ordinary tests in any case.
+# Any bytes on any port of the drone's protocols: each fuzz target for 60 seconds (or the number given), where nightly Rust is
+# present; cargo-fuzz is installed when it is missing. The properties of the same parsers run in the ordinary tests in any case.
 set -euo pipefail
 cd "$(dirname "$0")/../crates/tello-sdk"
 seconds="${1:-60}"
@@ -8,8 +8,8 @@ if ! cargo +nightly --version >/dev/null 2>&1; then
     echo "fuzz: nightly Rust is not installed: four targets skipped"
     exit 0
 fi
-if ! cargo fuzz --version >/dev/null 2>&1; then
-    echo "fuzz: cargo-fuzz is not installed (cargo install cargo-fuzz): four targets skipped"
+if ! cargo fuzz --version >/dev/null 2>&1 && ! cargo install --quiet --locked cargo-fuzz; then
+    echo "fuzz: cargo-fuzz is not installed and cannot be fetched: four targets skipped"
     exit 0
 fi
 cargo +nightly fuzz build
