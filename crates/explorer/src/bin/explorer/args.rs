@@ -204,7 +204,7 @@ pub(crate) struct Obstacles {
     /// Write the centres of the proven-free voxels in which the body fits; needs observations.
     #[arg(long, value_name = "FREE.ply")]
     pub(crate) proven_free: Option<PathBuf>,
-    /// Radius of the body that must fit, map units; as long as 0.15 m by default, 0 for all that was seen through.
+    /// Radius of the body that must fit, map units; as long as 0.15 m by default; 0 asks for its centre alone.
     #[arg(long, value_name = "r", value_parser = not_negative)]
     pub(crate) radius: Option<f64>,
     /// Which way is up, for the picture; told by the keyframes, else 0,0,1.
