@@ -33,6 +33,8 @@ pub struct Cycle {
     pub kept: usize,
     /// What was seen around, when the cycle followed a scan.
     pub exits: Option<ExitReport>,
+    /// The kept points among which `exits` was found; empty without it.
+    pub cloud: Vec<[f64; 3]>,
     /// The path as planned, map units; empty when there was nowhere to go.
     pub raw_path: Vec<[f64; 3]>,
     /// The path as flown, map units.

@@ -102,6 +102,10 @@ impl Think {
             position: pose.position,
             points: scene.points.len(),
             kept: scene.kept.len(),
+            cloud: exits
+                .as_ref()
+                .map(|_| scene.kept_points())
+                .unwrap_or_default(),
             exits,
             raw_path: Vec::new(),
             path: Vec::new(),

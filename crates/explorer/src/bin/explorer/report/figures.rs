@@ -58,7 +58,7 @@ pub(crate) fn of_flight(flight: &SimulatedFlight) -> Result<Vec<ReportFigure>, F
         .collect();
     let step = scans.len().div_ceil(MAX_SCANS).max(1);
     for cycle in scans.into_iter().step_by(step) {
-        figures.extend(profile(&view, last, cycle)?);
+        figures.extend(profile(&view, cycle)?);
     }
     figures.extend(path(&view, last, &cycles)?);
     Ok(figures)
@@ -111,11 +111,11 @@ fn cleaned_map(view: &TopView, last: &Scene) -> Result<ReportFigure, Failure> {
     )
 }
 
-fn profile(view: &TopView, last: &Scene, cycle: &Cycle) -> Result<Option<ReportFigure>, Failure> {
+fn profile(view: &TopView, cycle: &Cycle) -> Result<Option<ReportFigure>, Failure> {
     let Some(report) = &cycle.exits else {
         return Ok(None);
     };
-    let mut layers = scene::banded_cloud(view, &last.kept_points(), &report.profile, color::POINT);
+    let mut layers = scene::banded_cloud(view, &cycle.cloud, &report.profile, color::POINT);
     layers.push(scene::spokes(view, &report.profile));
     layers.extend(scene::exits(view, report));
     layers.push(scene::agent(view, report.profile.agent));
@@ -133,7 +133,7 @@ fn profile(view: &TopView, last: &Scene, cycle: &Cycle) -> Result<Option<ReportF
     );
     let caption = format!(
         "The scan that ended at {seconds:.0} s: mean range per degree about the drone, and the exits \
-         found. The points are those of the final map."
+         found in the map of that time."
     );
     figure("Figures 3d and 3e.", &caption, &drawn).map(Some)
 }
