@@ -184,3 +184,85 @@ impl Site {
         bin.is_some_and(|bin| bin.median.is_finite() && distance < bin.median - shrink)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use exit_finder::{AffinePlane, ExitConfig, ExitView, find_exits};
+
+    const LIMITS: KnownLimits = KnownLimits {
+        path: 0.6,
+        shrink: 0.5,
+    };
+
+    /// A round room of radius 3 with a door of 20 degrees towards each bearing, behind which a wall is seen at range 8.
+    fn report(doors_deg: &[f64]) -> ExitReport {
+        let points: Vec<[f64; 3]> = (0..720)
+            .map(|i| (f64::from(i) * 0.5 + 0.25).to_radians())
+            .map(|bearing| {
+                let in_door =
+                    |door: &f64| (bearing - door.to_radians()).cos() > 10f64.to_radians().cos();
+                let range = if doors_deg.iter().any(in_door) {
+                    8.0
+                } else {
+                    3.0
+                };
+                [range * bearing.cos(), range * bearing.sin(), 0.0]
+            })
+            .collect();
+        let plane = AffinePlane::from_up([0.0, 0.0, 1.0], [0.0; 3]).unwrap();
+        let view = ExitView::default();
+        find_exits(&points, [0.0; 3], &plane, &view, &ExitConfig::default()).unwrap()
+    }
+
+    #[test]
+    fn lists_each_exit_once() {
+        let (mut atlas, report) = (Atlas::default(), report(&[0.0, 120.0]));
+        let none = core::iter::empty();
+        assert_eq!(
+            atlas.add_site(Point3::origin(), &report, none.clone(), &LIMITS),
+            2
+        );
+        assert_eq!(atlas.add_site(Point3::origin(), &report, none, &LIMITS), 0);
+        assert_eq!((atlas.sites().len(), atlas.portals().len()), (2, 2));
+    }
+
+    #[test]
+    fn leaves_out_an_exit_that_was_flown_through() {
+        let (mut atlas, report) = (Atlas::default(), report(&[0.0, 120.0]));
+        let through = Point3::from(report.exits[0].position);
+        let trail = [Point3::origin(), through].into_iter();
+        assert_eq!(atlas.add_site(Point3::origin(), &report, trail, &LIMITS), 1);
+    }
+
+    #[test]
+    fn leaves_out_an_exit_into_what_an_earlier_site_saw() {
+        let mut atlas = Atlas::default();
+        let none = core::iter::empty();
+        atlas.add_site(Point3::origin(), &report(&[]), none.clone(), &LIMITS);
+        // The same room told by a second scan whose doors lie inside the first room: a gap between thin points, not a way out.
+        let mut inside = report(&[0.0]);
+        inside.exits[0].position = [1.0, 0.0, 0.0];
+        assert_eq!(atlas.add_site(Point3::origin(), &inside, none, &LIMITS), 0);
+        assert!(atlas.is_known(&Point3::new(-1.0, 0.0, 0.0), LIMITS.shrink));
+        assert!(!atlas.is_known(&Point3::new(-2.8, 0.0, 0.0), LIMITS.shrink));
+        assert!(!atlas.is_known(&Point3::new(-4.0, 0.0, 0.0), LIMITS.shrink));
+    }
+
+    #[test]
+    fn a_portal_that_was_arrived_at_is_not_offered_again() {
+        let (mut atlas, report) = (Atlas::default(), report(&[0.0, 120.0]));
+        atlas.add_site(Point3::origin(), &report, core::iter::empty(), &LIMITS);
+        let order = atlas.unvisited();
+        let scores = order.iter().map(|&i| atlas.portals()[i].score);
+        assert!(order.len() == 2 && scores.is_sorted_by(|a, b| a >= b));
+        let first = atlas.portals()[order[0]].through;
+        atlas.arrive(&first, 0.3);
+        assert_eq!(atlas.unvisited(), [order[1]]);
+        assert_eq!(atlas.portals()[order[0]].state, PortalState::Traversed);
+        if let Some(portal) = atlas.portal_mut(order[1]) {
+            portal.state = PortalState::Blocked;
+        }
+        assert!(atlas.unvisited().is_empty());
+    }
+}

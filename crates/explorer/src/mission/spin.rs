@@ -184,3 +184,156 @@ fn sticks(throttle: i64, yaw: i64) -> Command {
         yaw: stick(yaw),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Mission;
+    use super::*;
+    use crate::config::MissionConfig;
+    use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+    use slam_bridge::{SlamUpdate, TrackingState};
+    use tello_sdk::{Attitude, Source, Telemetry};
+
+    const FRAME: Duration = Duration::from_millis(100);
+    /// A turn that is not over by then is not over at all: the longest turn, the return and the rest, and more.
+    const MOST_FRAMES: u32 = 600;
+
+    /// A drone that obeys sticks at once; one unit of its map is two metres.
+    #[derive(Default)]
+    struct Drone {
+        tells_heading: bool,
+        tracked: bool,
+        is_stuck: bool,
+        turned: f64,
+        raised_m: f64,
+        highest_m: f64,
+        lowest_m: f64,
+    }
+
+    impl Drone {
+        fn obey(&mut self, command: &Command) {
+            let Command::Rc { throttle, yaw, .. } = command else {
+                panic!("a turn by sticks sends nothing but sticks: {command:?}");
+            };
+            if self.is_stuck {
+                return;
+            }
+            let seconds = FRAME.as_secs_f64();
+            self.turned += f64::from(yaw.percent()) / 100.0 * FULL_YAW_RATE * seconds;
+            self.raised_m += f64::from(throttle.percent()) / 100.0 * 0.8 * seconds;
+            self.highest_m = self.highest_m.max(self.raised_m);
+            self.lowest_m = self.lowest_m.min(self.raised_m);
+        }
+
+        fn report(&self, mission: &mut Mission, now: Duration) {
+            let mut telemetry = Telemetry::builder(now, Source::Simulated);
+            if self.tells_heading {
+                // As the drone tells it: whole degrees within half a turn.
+                let yaw = self.turned.sin().atan2(self.turned.cos());
+                telemetry = telemetry.attitude(Attitude {
+                    pitch_deg: 0.0,
+                    roll_deg: 0.0,
+                    yaw_deg: yaw.to_degrees().round(),
+                });
+            }
+            let up = Vector3::new(0.0, -1.0, 0.0);
+            let camera = Isometry3::from_parts(
+                Translation3::from(up * (self.raised_m / 2.0)),
+                UnitQuaternion::from_axis_angle(&Vector3::y_axis(), self.turned),
+            );
+            let update = SlamUpdate {
+                time: now,
+                state: if self.tracked {
+                    TrackingState::Tracking
+                } else {
+                    TrackingState::Lost
+                },
+                world_from_camera: self.tracked.then_some(camera),
+                epoch: 0,
+                tracked_points: 100,
+            };
+            let knowledge = &mut mission.shared.knowledge;
+            knowledge.observe(now, &telemetry.build(), Some(&update));
+        }
+
+        /// Flies one turn; returns how long it took.
+        fn spin(&mut self) -> Duration {
+            let mut mission = Mission::new(MissionConfig::default(), 1).unwrap();
+            self.report(&mut mission, Duration::ZERO);
+            let climb = Vector3::new(0.0, 0.0, 0.4);
+            mission
+                .shared
+                .knowledge
+                .calibrate(climb, Vector3::new(0.0, -0.2, 0.0));
+            let context = Context {
+                shared: &mut mission.shared,
+                stages: &mut (),
+            };
+            let mut spin = Spin::new(&context);
+            let mut command = Command::RC_ZERO;
+            for frame in 1..=MOST_FRAMES {
+                let now = FRAME * frame;
+                self.obey(&command);
+                self.report(&mut mission, now);
+                let context = Context {
+                    shared: &mut mission.shared,
+                    stages: &mut (),
+                };
+                match spin.next(&context) {
+                    Spun::Send(next) => command = next,
+                    Spun::Wait => {}
+                    Spun::Done => return now,
+                }
+            }
+            panic!("the turn never ended");
+        }
+    }
+
+    #[test]
+    fn turns_once_around_up_and_down_and_comes_back_level() {
+        let mut drone = Drone {
+            tells_heading: true,
+            tracked: true,
+            ..Drone::default()
+        };
+        let took = drone.spin();
+        assert!((FULL_TURN..FULL_TURN + 0.2).contains(&drone.turned));
+        assert!(drone.highest_m > 0.3 && drone.highest_m < 0.45);
+        assert!(drone.lowest_m > -0.1, "the floor's side is not proven free");
+        assert!(drone.raised_m.abs() < LEVEL_M);
+        assert!(took < Duration::from_secs(15), "{took:?}");
+    }
+
+    #[test]
+    fn turns_by_time_where_the_drone_tells_no_heading() {
+        let mut drone = Drone {
+            tracked: true,
+            ..Drone::default()
+        };
+        drone.spin();
+        assert!((FULL_TURN - 0.1..FULL_TURN + 0.2).contains(&drone.turned));
+    }
+
+    #[test]
+    fn keeps_its_height_without_a_pose() {
+        let mut drone = Drone {
+            tells_heading: true,
+            ..Drone::default()
+        };
+        drone.spin();
+        assert!(drone.turned > FULL_TURN);
+        assert_eq!((drone.lowest_m, drone.highest_m), (0.0, 0.0));
+    }
+
+    #[test]
+    fn gives_up_on_a_drone_that_does_not_turn() {
+        let mut drone = Drone {
+            tells_heading: true,
+            tracked: true,
+            is_stuck: true,
+            ..Drone::default()
+        };
+        let took = drone.spin();
+        assert!(took >= LONGEST && took < LONGEST + LONGEST_RETURN + 2 * REST);
+    }
+}
