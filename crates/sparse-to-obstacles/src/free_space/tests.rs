@@ -414,7 +414,7 @@ fn a_point_that_many_rays_pass_is_contradicted() {
     let lone = [1.05, 0.05, 0.05];
     let rays = |count: u32| {
         (0..count).map(|i| Ray {
-            origin: [0.0, 0.05, 0.01 + 0.001 * f64::from(i)],
+            origin: [0.0, 0.05, 0.01 + 0.0005 * f64::from(i)],
             end: [3.0, 0.05, 0.05],
         })
     };
@@ -422,7 +422,7 @@ fn a_point_that_many_rays_pass_is_contradicted() {
         origin: [0.0, 0.0, 0.0],
         end: lone,
     };
-    for (through, contradicted) in [(10, false), (30, true)] {
+    for (through, contradicted) in [(70, false), (100, true)] {
         let rays = rays(through).chain([hit]);
         let space = FreeSpace::from_rays(rays, &NOTHING, &config()).unwrap();
         assert_eq!(space.contradicts(lone), contradicted, "{through} rays");
