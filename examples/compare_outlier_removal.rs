@@ -5,11 +5,10 @@
 //! removes, and if depth_check.csv lies beside it how right that is: a point is wrong if a depth sensor disagrees by more
 //! than 20 %. With a world turns a simulated drone once round and takes the map of its SLAM, whose truth is known.
 
-#![allow(clippy::print_stdout, reason = "an example speaks to the terminal")]
-
 use core::time::Duration;
 use std::collections::HashMap;
 use std::error::Error;
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use indoor_sim::{SimConfig, Simulator, World};
@@ -22,6 +21,19 @@ use tello_sdk::{Command, Distance, Turn};
 type Truth = Vec<Option<bool>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let done = compare(&mut io::stdout().lock());
+    let closed = |error: &(dyn Error + 'static)| {
+        (error.downcast_ref::<io::Error>()).is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
+    };
+    match done {
+        // The reader has seen enough, as in `| head -1`.
+        Err(error) if closed(&*error) => Ok(()),
+        done => done,
+    }
+}
+
+/// Writes the table.
+fn compare(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "apartment".to_owned());
     let seed: u64 = arguments.next().map_or(Ok(1), |word| word.parse())?;
@@ -36,11 +48,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let points = map.positions();
     let count = |kind: bool| truth.iter().filter(|t| **t == Some(kind)).count();
     let (wrong, right) = (count(true), count(false));
-    println!(
+    writeln!(
+        out,
         "{} points; known to be wrong {wrong}, right {right}",
         points.len()
-    );
-    println!("method                        removed  precision  recall     F1");
+    )?;
+    writeln!(
+        out,
+        "method                        removed  precision  recall     F1"
+    )?;
     if map.has_observations() {
         let views = views(&map)?;
         for (name, config) in [
@@ -48,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             ("H, who saw what", OutlierConfig::rays()),
         ] {
             let found = remove_outliers(&points, Some(&views), &config)?;
-            row(name, &found.removed, &truth);
+            row(out, name, &found.removed, &truth)?;
         }
     }
     for (name, config) in [
@@ -59,27 +75,36 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("A, the paper's constants", OutlierConfig::paper()),
     ] {
         row(
+            out,
             name,
             &remove_outliers(&points, None, &config)?.removed,
             &truth,
-        );
+        )?;
     }
     row(
+        out,
         "SOR",
         &statistical(&points, &Default::default())?.removed,
         &truth,
-    );
+    )?;
     row(
+        out,
         "ROR",
         &radius(&points, &Default::default())?.removed,
         &truth,
-    );
-    row("LOF", &lof(&points, &Default::default())?.removed, &truth);
+    )?;
     row(
+        out,
+        "LOF",
+        &lof(&points, &Default::default())?.removed,
+        &truth,
+    )?;
+    row(
+        out,
         "DBSCAN",
         &dbscan(&points, &Default::default())?.removed,
         &truth,
-    );
+    )?;
     Ok(())
 }
 
@@ -155,19 +180,23 @@ fn views(map: &Map) -> Result<Views, Box<dyn Error>> {
     Ok(Views::new(centers.collect(), observers.collect())?)
 }
 
-fn row(name: &str, removed: &[usize], truth: &Truth) {
+fn row(out: &mut impl Write, name: &str, removed: &[usize], truth: &Truth) -> io::Result<()> {
     let found = |kind: bool| removed.iter().filter(|&&i| truth[i] == Some(kind)).count() as f64;
     let (hits, misses) = (found(true), found(false));
     let wrong = truth.iter().filter(|t| **t == Some(true)).count() as f64;
     if wrong == 0.0 {
-        println!("{name:28} {:8}          -       -      -", removed.len());
-        return;
+        return writeln!(
+            out,
+            "{name:28} {:8}          -       -      -",
+            removed.len()
+        );
     }
     let precision = hits / (hits + misses).max(1.0);
     let recall = hits / wrong;
     let f1 = 2.0 * hits / (hits + misses + wrong);
-    println!(
+    writeln!(
+        out,
         "{name:28} {:8} {precision:10.3} {recall:7.3} {f1:6.3}",
         removed.len()
-    );
+    )
 }
