@@ -80,3 +80,29 @@ fn true_surfaces_stay_closed() {
         assert!(wrong <= most_open && wrong2 <= 5 && flyable > 1800);
     }
 }
+
+/// Most room at the least share of open surface: what `explorer obstacles --proven-free` exports.
+#[test]
+fn without_contradicted_points_there_is_more_room() {
+    let Some((map, surface)) = load() else {
+        println!("skipped: the kitchen map or its depth images are not there (set EXPLORER_DATA)");
+        return;
+    };
+    let config = FreeSpaceConfig {
+        resolution: RESOLUTION,
+        clearance: 0.22,
+        max_triangle_angle: 0.21,
+        ..FreeSpaceConfig::default()
+    };
+    let nothing: [Vec3; 0] = [];
+    let mut space = FreeSpace::from_rays(map.rays.iter().copied(), &nothing, &config).unwrap();
+    let mut solid = map.points.clone();
+    solid.retain(|&point| !space.contradicts(point));
+    space.insert([], &solid).unwrap();
+    let voxels = space.voxel_centers();
+    let (wrong, flyable) = open(&surface, &voxels, |place| centres_are_free(&space, place));
+    let dropped = map.points.len() - solid.len();
+    println!("{dropped} points dropped: {wrong} surface voxels open, {flyable} places");
+    assert!(wrong * 2_000 <= surface.len(), "{wrong} open");
+    assert!(flyable >= 4_673, "{flyable} places");
+}

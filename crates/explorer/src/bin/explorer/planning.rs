@@ -69,15 +69,7 @@ pub(crate) fn surroundings(
         ..FreeSpaceConfig::default()
     };
     let config = config.scaled(units_per_meter);
-    let (free, free_space) = timed(|| {
-        let nothing: [[f64; 3]; 0] = [];
-        let mut free = prove(loaded, kept, &nothing, &config)?;
-        if let Some(free) = &mut free {
-            points.retain(|point| !free.contradicts(*point));
-            free.insert([], &points).map_err(Failure::internal)?;
-        }
-        Ok(free)
-    });
+    let (free, free_space) = timed(|| prove_uncontradicted(loaded, kept, &mut points, &config));
     let free = free?;
     let (obstacles, kmeans, hulls) = hulls(&points, clusters.min(points.len()), seed)?;
     Ok(Surroundings {
@@ -92,7 +84,7 @@ pub(crate) fn surroundings(
 }
 
 /// What `explorer obstacles` measures: all points as obstacles, and free space that keeps a distance
-/// from every one of them.
+/// from every one of them that rays do not contradict.
 pub(crate) fn measured_surroundings(
     loaded: &LoadedMap,
     clusters: usize,
@@ -109,7 +101,8 @@ pub(crate) fn measured_surroundings(
     };
     let config = config.scaled(units_per_meter);
     let all: Vec<usize> = (0..points.len()).collect();
-    let (free, free_space) = timed(|| prove(loaded, &all, points, &config));
+    let mut solid = points.clone();
+    let (free, free_space) = timed(|| prove_uncontradicted(loaded, &all, &mut solid, &config));
     let free = free?;
     let (obstacles, kmeans, hulls) = hulls(points, clusters, seed)?;
     Ok(Surroundings {
@@ -121,6 +114,22 @@ pub(crate) fn measured_surroundings(
             free_space,
         },
     })
+}
+
+/// Proven-free space of the points with these indices; `points` keeps those that its rays do not contradict,
+/// and they are its surface.
+fn prove_uncontradicted(
+    loaded: &LoadedMap,
+    indices: &[usize],
+    points: &mut Vec<[f64; 3]>,
+    config: &FreeSpaceConfig,
+) -> Result<Option<FreeSpace>, Failure> {
+    let mut free = prove(loaded, indices, config)?;
+    if let Some(free) = &mut free {
+        points.retain(|point| !free.contradicts(*point));
+        free.insert([], points).map_err(Failure::internal)?;
+    }
+    Ok(free)
 }
 
 /// The obstacles, and the seconds that K-means and the hulls took.
@@ -146,13 +155,13 @@ fn hulls(
 fn prove(
     loaded: &LoadedMap,
     kept: &[usize],
-    surface: &[[f64; 3]],
     config: &FreeSpaceConfig,
 ) -> Result<Option<FreeSpace>, Failure> {
+    let nothing: [[f64; 3]; 0] = [];
     if !loaded.map.has_observations() {
         return Ok(None);
     }
-    FreeSpace::from_rays(loaded.rays(kept.iter().copied()), surface, config)
+    FreeSpace::from_rays(loaded.rays(kept.iter().copied()), &nothing, config)
         .map(Some)
         .map_err(|error| Failure::new(error, "give the map's unit with --scale"))
 }
