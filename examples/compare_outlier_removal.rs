@@ -81,30 +81,23 @@ fn compare(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             &truth,
         )?;
     }
-    row(
-        out,
-        "SOR",
-        &statistical(&points, &Default::default())?.removed,
-        &truth,
-    )?;
-    row(
-        out,
-        "ROR",
-        &radius(&points, &Default::default())?.removed,
-        &truth,
-    )?;
-    row(
-        out,
-        "LOF",
-        &lof(&points, &Default::default())?.removed,
-        &truth,
-    )?;
-    row(
-        out,
-        "DBSCAN",
-        &dbscan(&points, &Default::default())?.removed,
-        &truth,
-    )?;
+    baselines(out, &points, &truth)
+}
+
+/// What people use today, at the settings that they are usually given.
+fn baselines(
+    out: &mut impl Write,
+    points: &[[f64; 3]],
+    truth: &Truth,
+) -> Result<(), Box<dyn Error>> {
+    for (name, found) in [
+        ("SOR", statistical(points, &Default::default())?),
+        ("ROR", radius(points, &Default::default())?),
+        ("LOF", lof(points, &Default::default())?),
+        ("DBSCAN", dbscan(points, &Default::default())?),
+    ] {
+        row(out, name, &found.removed, truth)?;
+    }
     Ok(())
 }
 
