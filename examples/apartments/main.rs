@@ -1,7 +1,7 @@
 //! Problem: do planned paths cross real walls? Apartments are scanned in the simulator, paths are planned on what its SLAM made
 //! of them, among the paper's hulls and in proven free space, and judged by the true walls.
 //!
-//! Run: `cargo run --release -p examples --example proven_free_apartments [FIRST_SEED] [COUNT]`
+//! Run: `cargo run --release -p examples --example proven_free_apartments [FIRST_SEED] [COUNT] [CONTRADICTION_LOG_ODDS]`
 //! Prints what became of 50 queries in each apartment: between places that are twice the drone's radius from everything, and
 //! between any places at which it fits. The scan's camera saw through all of them.
 
@@ -14,6 +14,7 @@ use std::error::Error;
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
+use sparse_to_obstacles::FreeSpaceConfig;
 use trial::{Belief, RADIUS, Tally};
 
 const QUERIES: usize = 50;
@@ -22,6 +23,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let first: u64 = arguments.next().map_or(Ok(1), |word| word.parse())?;
     let count: u64 = arguments.next().map_or(Ok(3), |word| word.parse())?;
+    let default = FreeSpaceConfig::default().contradiction_log_odds;
+    let contradiction: f64 = arguments.next().map_or(Ok(default), |word| word.parse())?;
     let mut totals = [[Tally::default(); 2]; 2];
     for seed in first..first + count {
         let scan = scan::scan(seed)?;
@@ -31,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             scan.points.len(),
             scan.keyframes
         );
-        let belief = Belief::new(&scan, seed)?;
+        let belief = Belief::new(&scan, contradiction, seed)?;
         for (berth, totals) in [2.0 * RADIUS, RADIUS].into_iter().zip(&mut totals) {
             let mut rng = Pcg64::seed_from_u64(seed);
             let queries = trial::queries(&scan, berth, QUERIES, &mut rng)?;

@@ -64,9 +64,10 @@ pub(crate) struct Belief {
 }
 
 impl Belief {
-    pub(crate) fn new(scan: &Scan, seed: u64) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn new(scan: &Scan, contradiction: f64, seed: u64) -> Result<Self, Box<dyn Error>> {
         let config = FreeSpaceConfig {
             clearance: RADIUS,
+            contradiction_log_odds: contradiction,
             ..FreeSpaceConfig::default()
         };
         let nothing: [Place; 0] = [];

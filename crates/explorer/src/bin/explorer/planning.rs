@@ -69,7 +69,7 @@ pub(crate) fn surroundings(
         ..FreeSpaceConfig::default()
     };
     let config = config.scaled(units_per_meter);
-    let (free, free_space) = timed(|| prove_uncontradicted(loaded, kept, &mut points, &config));
+    let (free, free_space) = timed(|| prove(loaded, kept, &mut points, &config));
     let free = free?;
     let (obstacles, kmeans, hulls) = hulls(&points, clusters.min(points.len()), seed)?;
     Ok(Surroundings {
@@ -102,7 +102,7 @@ pub(crate) fn measured_surroundings(
     let config = config.scaled(units_per_meter);
     let all: Vec<usize> = (0..points.len()).collect();
     let mut solid = points.clone();
-    let (free, free_space) = timed(|| prove_uncontradicted(loaded, &all, &mut solid, &config));
+    let (free, free_space) = timed(|| prove(loaded, &all, &mut solid, &config));
     let free = free?;
     let (obstacles, kmeans, hulls) = hulls(points, clusters, seed)?;
     Ok(Surroundings {
@@ -114,22 +114,6 @@ pub(crate) fn measured_surroundings(
             free_space,
         },
     })
-}
-
-/// Proven-free space of the points with these indices; `points` keeps those that its rays do not contradict,
-/// and they are its surface.
-fn prove_uncontradicted(
-    loaded: &LoadedMap,
-    indices: &[usize],
-    points: &mut Vec<[f64; 3]>,
-    config: &FreeSpaceConfig,
-) -> Result<Option<FreeSpace>, Failure> {
-    let mut free = prove(loaded, indices, config)?;
-    if let Some(free) = &mut free {
-        points.retain(|point| !free.contradicts(*point));
-        free.insert([], points).map_err(Failure::internal)?;
-    }
-    Ok(free)
 }
 
 /// The obstacles, and the seconds that K-means and the hulls took.
@@ -151,19 +135,23 @@ fn hulls(
     Ok((set, seconds, hull_seconds))
 }
 
-/// Proven-free space, for a map with observations.
+/// Proven-free space from the rays to the points with these indices, for a map with observations. `points` keeps those
+/// that the rays do not contradict, and they are its surface.
 fn prove(
     loaded: &LoadedMap,
-    kept: &[usize],
+    indices: &[usize],
+    points: &mut Vec<[f64; 3]>,
     config: &FreeSpaceConfig,
 ) -> Result<Option<FreeSpace>, Failure> {
-    let nothing: [[f64; 3]; 0] = [];
     if !loaded.map.has_observations() {
         return Ok(None);
     }
-    FreeSpace::from_rays(loaded.rays(kept.iter().copied()), &nothing, config)
-        .map(Some)
-        .map_err(|error| Failure::new(error, "give the map's unit with --scale"))
+    let nothing: [[f64; 3]; 0] = [];
+    let mut free = FreeSpace::from_rays(loaded.rays(indices.iter().copied()), &nothing, config)
+        .map_err(|error| Failure::new(error, "give the map's unit with --scale"))?;
+    points.retain(|point| !free.contradicts(*point));
+    free.insert([], points).map_err(Failure::internal)?;
+    Ok(Some(free))
 }
 
 fn check_clusters(clusters: Option<usize>, points: usize) -> Result<usize, Failure> {
