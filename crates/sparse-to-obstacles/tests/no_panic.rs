@@ -10,7 +10,7 @@ use sparse_to_obstacles::{
 
 /// Ordinary coordinates with a few of any kind: huge, tiny, infinite, NaN.
 fn coordinate() -> impl Strategy<Value = f64> {
-    prop_oneof![20 => -5.0..5.0_f64, 2 => Just(0.0), 1 => ANY, 1 => Just(1e150), 1 => Just(1e-200)]
+    prop_oneof![20 => -5.0..5.0_f64, 2 => Just(0.0), 1 => ANY, 1 => Just(1e150), 1 => Just(1e200), 1 => Just(1e-200)]
 }
 
 fn point() -> impl Strategy<Value = [f64; 3]> {

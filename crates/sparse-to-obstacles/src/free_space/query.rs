@@ -115,8 +115,8 @@ impl FreeSpace {
     ///
     /// True where every voxel that the ball touches is proven free, and the centre keeps the larger of
     /// the radius and [`clearance`](crate::FreeSpaceConfig::clearance) from every surface point. Exact on
-    /// the voxels for the whole sweep. A coordinate or radius that is not finite, or a negative radius,
-    /// is not free.
+    /// the voxels for the whole sweep. A coordinate, a radius or a length of the way that is not finite, or
+    /// a negative radius, is not free.
     #[must_use]
     pub fn motion_is_free(&self, a: [f64; 3], b: [f64; 3], radius: f64) -> bool {
         if !(is_finite(a) && is_finite(b) && radius >= 0.0 && radius.is_finite()) {
@@ -127,6 +127,10 @@ impl FreeSpace {
             return false;
         }
         let length = distance(a, b);
+        // Coordinates beyond 1e150: what cannot be measured is not proven.
+        if !length.is_finite() {
+            return false;
+        }
         let at = |done: f64| {
             if done > 0.0 {
                 lerp(a, b, (done / length).min(1.0))

@@ -391,6 +391,19 @@ fn enormous_balls_are_refused_at_once() {
 }
 
 #[test]
+fn a_way_too_long_to_measure_is_refused_at_once() {
+    // One voxel holds coordinates whose squares overflow.
+    let config = FreeSpaceConfig {
+        resolution: 1e200,
+        ..config()
+    };
+    let mut space = FreeSpace::from_rays([], &NOTHING, &config).unwrap();
+    space.add_ball([1e180, 1.0, 1.0], 0.0).unwrap();
+    assert!(space.motion_is_free([1e180, 1.0, 1.0], [1e180, 1.0, 1.0], 0.0));
+    assert!(!space.motion_is_free([1e180, 1.0, 1.0], [1.0, 1.0, 1.0], 0.0));
+}
+
+#[test]
 fn balls_beyond_the_reach_of_the_distance_field_are_exact() {
     // A block of free space 2 m wide at a fine resolution: 50 voxels.
     let mut space = FreeSpace::from_rays(
