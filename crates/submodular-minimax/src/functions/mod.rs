@@ -1,11 +1,12 @@
 //! Ready-made set functions, dense and sparse, and the joint function of the exploration paper.
 
 mod bounded_greedy;
+mod client_blocks;
 mod combine;
 mod coverage;
 mod error;
 mod facility_location;
-mod far_field;
+mod gain_bound;
 mod graph_cut;
 mod modular;
 mod representation;

@@ -297,34 +297,6 @@ impl Points {
             Kernel::Rational { scale } => 1.0 / (1.0 + squared / (scale * scale)),
         }
     }
-
-    /// The squared distance up to which the kernel s(q) has derivatives of alternating sign.
-    pub(super) fn smooth_within(&self) -> f64 {
-        match self.kernel {
-            Kernel::Linear { reach } => reach * reach,
-            Kernel::Reciprocal { .. } | Kernel::Rational { .. } => f64::INFINITY,
-        }
-    }
-
-    /// (s(q) − s(m) − s'(m) (q − m)) / (q − m)² with m = `mean` > 0 and q = `squared`, both within
-    /// [`Self::smooth_within`]; falls in q.
-    pub(super) fn bend(&self, mean: f64, squared: f64) -> f64 {
-        match self.kernel {
-            Kernel::Linear { reach } => {
-                let (m, d) = (mean.sqrt(), squared.sqrt());
-                1.0 / (2.0 * reach * m * (d + m) * (d + m))
-            }
-            Kernel::Reciprocal { scale } => {
-                let (m, d) = (mean.sqrt(), squared.sqrt());
-                let (a, b, c) = (scale + m, scale + d, d + m);
-                scale * (b + 2.0 * m) / (2.0 * m * a * a * b * c * c)
-            }
-            Kernel::Rational { scale } => {
-                let area = scale * scale;
-                area / ((area + squared) * (area + mean) * (area + mean))
-            }
-        }
-    }
 }
 
 impl Similarity for Points {
@@ -360,14 +332,36 @@ impl Similarity for Points {
                 weights.map_or(more, |weights| weights[v] * more)
             });
         }
-        let (x, y, z) = (&self.x[..], &self.y[..], &self.z[..]);
-        let n = x.len().min(y.len()).min(z.len()).min(served.len());
-        let (x, y, z, served) = (&x[..n], &y[..n], &z[..n], &served[..n]);
+        pulp::Arch::new().dispatch(PlainGain {
+            points: self,
+            center,
+            served,
+        })
+    }
+}
+
+/// The gain without caps and weights, compiled for the widest vectors; nothing is fused, so the bits
+/// do not depend on their width.
+struct PlainGain<'a> {
+    points: &'a Points,
+    center: [f64; 3],
+    served: &'a [f64],
+}
+
+impl pulp::WithSimd for PlainGain<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> f64 {
+        let (points, center) = (self.points, self.center);
+        let (x, y, z) = (&points.x[..], &points.y[..], &points.z[..]);
+        let n = x.len().min(y.len()).min(z.len()).min(self.served.len());
+        let (x, y, z, served) = (&x[..n], &y[..n], &z[..n], &self.served[..n]);
         let squared = |v: usize| {
             let (a, b, c) = (center[0] - x[v], center[1] - y[v], center[2] - z[v]);
             a * a + b * b + c * c
         };
-        match self.kernel {
+        match points.kernel {
             Kernel::Linear { reach } => lanes(n, |v| {
                 ((1.0 - squared(v).sqrt() / reach).max(0.0) - served[v]).max(0.0)
             }),
@@ -385,6 +379,7 @@ impl Similarity for Points {
 }
 
 /// Σ term(v) in eight interleaved lanes, added up in order: vectorises, same bits on every machine.
+#[inline(always)]
 fn lanes(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     let mut sums = [0.0; 8];
     let whole = n - n % 8;
