@@ -1,11 +1,11 @@
-//! Outlier removal of 10,000, 50,000 and 200,000 points: closed form, iterations, and baselines.
+//! Outlier removal of 10,000, 50,000 and 200,000 points: closed form, iterations, and SOR over an R*-tree.
 #![allow(missing_docs, reason = "criterion's macros make undocumented items")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use explorer::baseline::{StatisticalConfig, statistical};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::hint::black_box;
-use submodular_minimax::baseline::{StatisticalConfig, statistical};
 use submodular_minimax::{OutlierConfig, Solver, remove_outliers};
 
 /// Five walls of a 12 x 7 x 2.6 m room in textured patches, every seventh point gross.

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod atlas;
+pub mod baseline;
 mod calibration;
 mod config;
 mod heading;

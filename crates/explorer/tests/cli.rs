@@ -118,12 +118,37 @@ const PLAN: [&str; 7] = [
     "min_clearance",
 ];
 
+const METHODS: [&str; 10] = [
+    "submodular",
+    "paper",
+    "nearest",
+    "supported",
+    "connected",
+    "rays",
+    "sor",
+    "ror",
+    "lof",
+    "dbscan",
+];
+
+#[test]
+fn clean_lists_its_methods_in_the_help_and_when_it_does_not_know_one() {
+    let help = String::from_utf8(explorer(&["clean", "--help"]).stdout).expect("text");
+    let refused = explorer(&["clean", "map.ply", "--method", "magic"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let refused = String::from_utf8(refused.stderr).expect("text");
+    for method in METHODS {
+        assert!(help.contains(&format!("- {method}:")), "{method}: {help}");
+        assert!(refused.contains(method), "{method}: {refused}");
+    }
+}
+
 #[test]
 fn clean_keeps_and_writes_what_it_says() {
     let folder = folder("clean");
     let input = file(&folder, "room.csv", &format!("{}40,40,40\n", room()));
     let kept = folder.join("kept.ply").display().to_string();
-    for method in ["submodular", "paper", "sor", "ror", "dbscan"] {
+    for method in METHODS {
         let report = json(&["clean", &input, "--method", method, "-o", &kept, "--json"]);
         assert_keys(&report, &CLEAN);
         let removed = report["removed_indices"].as_array().expect("a list").len() as u64;

@@ -1,16 +1,15 @@
-//! Outlier removal on clouds with known truth: the default against baselines at their best setting.
+//! Outlier removal on clouds with known truth: every reading, and the default from seed to seed.
 //!
 //! `cargo run --release -p submodular-minimax --example 02_measure_synthetic_clouds`
 //!
 //! Apartments from seeds (5 % to 25 % outliers, 10,000 to 100,000 points, clean ones too) and, if the
 //! data folder is there, the synthetic apartment that they imitate. Clean clouds show the
 //! false-positive rate. The last table gives the default's least, mean and largest F1 over ten seeds.
+//! Against what others use: `compare_outlier_removal --generated` in the workspace's examples.
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
 
 #[path = "../tests/labelled/mod.rs"]
 mod labelled;
-#[path = "../tests/labelled/baselines.rs"]
-mod settings;
 
 use labelled::apartment::Apartment;
 use labelled::{Labelled, f1, false_positive_rate};
@@ -32,20 +31,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("F1 (last three: share removed of a clean cloud)");
     for cloud in clouds.iter().chain(&clean) {
         println!("  {}", cloud.name);
-    }
-    for family in settings::families() {
-        let (name, row) = settings::best_fixed(&family, &clouds)?;
-        print!("{name:34}");
-        row.iter().for_each(|(f1, _)| print!(" {f1:.3}"));
-        let run = family
-            .iter()
-            .find(|c| c.0 == name)
-            .ok_or("the best is in the family")?;
-        for cloud in &clean {
-            let removed = run.1(&cloud.points)?.removed;
-            print!(" {:.3}", false_positive_rate(&removed, &cloud.outlier));
-        }
-        println!();
     }
     for (name, config) in [
         ("D nearest", OutlierConfig::nearest()),

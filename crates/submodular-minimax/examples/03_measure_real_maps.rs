@@ -1,16 +1,15 @@
-//! Outlier removal on labelled maps: our presets at fixed settings, baselines at their best setting.
+//! Outlier removal on labelled maps: every reading, and the default with one part of it taken away.
 //!
 //! `cargo run --release -p submodular-minimax --example 03_measure_real_maps [MAP_FOLDER ...]`
 //!
 //! A map folder holds map.ply, keyframes.csv, observations.csv.gz and depth_check.csv; without
 //! arguments the maps of the data folder are read. A point is an outlier if its depth differs by
-//! more than 20 % from the depth sensor's. Baselines: the one setting of a grid with the best mean F1.
+//! more than 20 % from the depth sensor's. Against what others use: `compare_outlier_removal` in the
+//! workspace's examples.
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
 
 #[path = "../tests/labelled/mod.rs"]
 mod labelled;
-#[path = "../tests/labelled/baselines.rs"]
-mod settings;
 
 use labelled::{Labelled, average_precision, f1, false_positive_rate};
 use std::error::Error;
@@ -34,13 +33,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     print!("{:34}", "F1 / AP");
     maps.iter().for_each(|m| print!(" {:>34}", m.name));
     println!();
-    for family in settings::families() {
-        let (name, row) = settings::best_fixed(&family, &maps)?;
-        print!("{name:34}");
-        row.iter()
-            .for_each(|(f1, ap)| print!(" {:>34}", format!("{f1:.3} / {ap:.3}")));
-        println!();
-    }
     for (name, config, observed) in readings() {
         print!("{name:34}");
         for map in &maps {

@@ -9,17 +9,13 @@ mod labelled;
 use labelled::room::Room;
 use std::error::Error;
 use std::fmt::Write;
-use submodular_minimax::baseline::{StatisticalConfig, statistical};
 use submodular_minimax::{OutlierConfig, remove_outliers};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let largest: usize = arguments.next().map_or(Ok(1_000_000), |n| n.parse())?;
     let mut curve = Vec::new();
-    println!(
-        "{:>9} {:>12} {:>12} {:>12}",
-        "points", "default ms", "µs / point", "SOR ms"
-    );
+    println!("{:>9} {:>12} {:>12}", "points", "default ms", "µs / point");
     for n in [
         1_000, 3_000, 10_000, 30_000, 50_000, 100_000, 200_000, 500_000, 1_000_000,
     ] {
@@ -38,13 +34,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         for _ in 0..repeats {
             remove_outliers(&cloud.points, None, &config)?;
         }
-        let between = cpu_seconds()?;
-        let ours = (between - before) / repeats as f64;
-        statistical(&cloud.points, &StatisticalConfig::default())?;
-        let sor = cpu_seconds()? - between;
-        let (ms, each) = (1e3 * ours, 1e6 * ours / n as f64);
-        println!("{n:9} {ms:12.1} {each:12.2} {:12.1}", 1e3 * sor);
-        curve.push((n as f64, ours));
+        let seconds = (cpu_seconds()? - before) / repeats as f64;
+        let (ms, each) = (1e3 * seconds, 1e6 * seconds / n as f64);
+        println!("{n:9} {ms:12.1} {each:12.2}");
+        curve.push((n as f64, seconds));
     }
     if let Some(file) = arguments.next() {
         std::fs::write(file, svg(&curve)?)?;
@@ -59,24 +52,77 @@ fn cpu_seconds() -> Result<f64, Box<dyn Error>> {
     Ok(nanoseconds.parse::<f64>()? / 1e9)
 }
 
-/// Points against seconds, both logarithmic, three decades wide and four high.
+/// Points against seconds, both axes logarithmic, with a decade's grid and the line of linear growth.
 fn svg(curve: &[(f64, f64)]) -> Result<String, std::fmt::Error> {
-    let place = |(n, s): (f64, f64)| {
-        (
-            40.0 + 120.0 * (n.log10() - 3.0),
-            380.0 - 80.0 * (s.log10() + 4.0),
-        )
-    };
+    let x = |n: f64| 80.0 + 150.0 * (n.log10() - 3.0);
+    let y = |s: f64| 350.0 - 80.0 * (s.log10() + 3.0);
     let mut text = String::from(
-        r#"<svg xmlns="http://www.w3.org/2000/svg" width="440" height="450" viewBox="0 -30 440 450">"#,
+        r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 580 430" font-family="sans-serif" font-size="13">
+<rect width="580" height="430" fill="#fff"/>
+<text x="80" y="20" font-size="15">CPU time of outlier removal on one core</text>
+"##,
     );
-    text += r#"<text x="100" y="412">points, 10³ to 10⁶; seconds, 10⁻⁴ to 10¹</text>"#;
-    text += r##"<rect x="40" y="-20" width="360" height="400" fill="none" stroke="#888"/>"##;
-    text += r#"<polyline fill="none" stroke="black" points=""#;
-    for &point in curve {
-        let (x, y) = place(point);
-        write!(text, "{x:.1},{y:.1} ")?;
+    for (n, label) in [
+        (1e3, "1,000"),
+        (1e4, "10,000"),
+        (1e5, "100,000"),
+        (1e6, "1,000,000"),
+    ] {
+        let x = x(n);
+        writeln!(text, r##"<path d="M{x} 30V350" stroke="#ddd"/>"##)?;
+        writeln!(
+            text,
+            r#"<text x="{x}" y="370" text-anchor="middle">{label}</text>"#
+        )?;
     }
-    text += r#""/></svg>"#;
+    for (s, label) in [
+        (1e-3, "1 ms"),
+        (1e-2, "10 ms"),
+        (0.1, "0.1 s"),
+        (1.0, "1 s"),
+        (10.0, "10 s"),
+    ] {
+        let y = y(s);
+        writeln!(text, r##"<path d="M80 {y}H530" stroke="#ddd"/>"##)?;
+        writeln!(
+            text,
+            r#"<text x="72" y="{}" text-anchor="end">{label}</text>"#,
+            y + 4.0
+        )?;
+    }
+    writeln!(
+        text,
+        r#"<text x="305" y="400" text-anchor="middle">points</text>"#
+    )?;
+    if let (Some(first), Some(last)) = (curve.first(), curve.last()) {
+        let (from, to) = (
+            (x(first.0), y(first.1)),
+            (x(last.0), y(first.1 * last.0 / first.0)),
+        );
+        let (x, y) = (to.0 - 8.0, to.1 + 22.0);
+        let line = format!("M{:.1} {:.1}L{:.1} {:.1}", from.0, from.1, to.0, to.1);
+        writeln!(
+            text,
+            r##"<path d="{line}" stroke="#888" stroke-dasharray="5 4"/>"##
+        )?;
+        writeln!(
+            text,
+            r##"<text x="{x:.1}" y="{y:.1}" text-anchor="end" fill="#666">linear</text>"##
+        )?;
+    }
+    text += r##"<polyline fill="none" stroke="#1f5fa8" stroke-width="2" points=""##;
+    for &(n, s) in curve {
+        write!(text, "{:.1},{:.1} ", x(n), y(s))?;
+    }
+    text += "\"/>\n";
+    for &(n, s) in curve {
+        writeln!(
+            text,
+            r##"<circle cx="{:.1}" cy="{:.1}" r="3.5" fill="#1f5fa8"/>"##,
+            x(n),
+            y(s)
+        )?;
+    }
+    text += "</svg>\n";
     Ok(text)
 }

@@ -1,6 +1,5 @@
 #![doc = include_str!("../README.md")]
 
-pub mod baseline;
 mod disjoint_sets;
 pub mod functions;
 mod joint_function;

@@ -121,7 +121,7 @@ pub(crate) struct Pipeline {
 pub(crate) struct Clean {
     #[command(flatten)]
     pub(crate) input: Input,
-    /// How outliers are told.
+    /// How outliers are told; lengths of every method are multiples of the map's own spacing.
     #[arg(long, value_enum, default_value_t = CleanMethod::Submodular)]
     pub(crate) method: CleanMethod,
     /// Where the camera was, for a map without observations: far points are then judged more
@@ -141,30 +141,31 @@ pub(crate) struct Clean {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CleanMethod {
-    /// Minimax submodular optimisation, recommended setting.
+    /// The recommended one: minimax submodular optimisation on distances divided by viewing ranges, with all that
+    /// the observations tell.
     Submodular,
-    /// The paper's constants (reading A), literally: they remove nothing, on any map.
+    /// The paper's constants, literally (reading A): they remove nothing, from any map.
     #[value(alias = "a")]
     Paper,
-    /// Reading D: near some other point.
+    /// Keeps a point that lies near some other point (reading D).
     #[value(alias = "d")]
     Nearest,
-    /// Reading F: near a point that others support.
+    /// Keeps a point that lies near one that has neighbours of its own (reading F).
     #[value(alias = "f")]
     Supported,
-    /// Reading G: F without small detached components.
+    /// The same, but small groups of points apart from all others go (reading G).
     #[value(alias = "g")]
     Connected,
-    /// Reading H: G, and viewing rays through a point count against it.
+    /// The same, and a point goes sooner when cameras saw through it (reading H); without observations as connected.
     #[value(alias = "h")]
     Rays,
-    /// Statistical outlier removal.
+    /// Baseline: statistical outlier removal, points far from their 20 neighbours, more than 2 deviations above the mean.
     Sor,
-    /// Radius outlier removal.
+    /// Baseline: radius outlier removal, points with fewer than 2 others within 4 nearest-neighbour distances.
     Ror,
-    /// Local outlier factor.
+    /// Baseline: local outlier factor, points in a thinner place than their 20 neighbours, factor above 1.5.
     Lof,
-    /// Density clustering.
+    /// Baseline: density clustering, points of no cluster, reach 1.8 fourth-neighbour distances, 3 points.
     Dbscan,
 }
 

@@ -1,8 +1,9 @@
 //! `explorer clean`: which points of a map are outliers.
 
+use explorer::baseline;
 use serde::Serialize;
 use slam_bridge::write_ply;
-use submodular_minimax::{OutlierConfig, baseline, remove_outliers};
+use submodular_minimax::{OutlierConfig, remove_outliers};
 
 use crate::args::{Clean, CleanMethod, Output, Vector};
 use crate::failure::Failure;

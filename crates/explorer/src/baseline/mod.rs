@@ -7,10 +7,12 @@
 //! | [`lof`] | local reachability density below that of the neighbours | Breunig et al. 2000 |
 //! | [`dbscan`] | noise and clusters that are too small | Ester et al. 1996 |
 //!
-//! All are deterministic, run in O(n k log n) expected time and take any number of points: with
+//! They serve `explorer clean --method` and the comparisons; a program of your own that wants to clean takes
+//! `submodular-minimax`. All are deterministic, run in O(n k log n) expected time and take any number of points: with
 //! none, the result is empty; a point without neighbours to judge it by is kept by [`statistical`]
 //! and [`lof`] and removed by [`radius`] and [`dbscan`], whose definitions demand neighbours.
 
+mod cloud;
 mod dbscan;
 mod error;
 mod lof;

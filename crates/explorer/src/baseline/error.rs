@@ -1,6 +1,5 @@
 //! Why a baseline cannot run.
 
-use crate::points::NonFiniteAt;
 use thiserror::Error;
 
 /// Why a baseline cannot run.
@@ -23,12 +22,6 @@ pub enum BaselineError {
         /// What it must be.
         range: &'static str,
     },
-}
-
-impl From<NonFiniteAt> for BaselineError {
-    fn from(at: NonFiniteAt) -> Self {
-        Self::NonFinite { index: at.0 }
-    }
 }
 
 /// An error unless `value` is finite and at least `least`.

@@ -3,12 +3,12 @@
 //! Reference: Ester, Kriegel, Sander, Xu, "A density-based algorithm for discovering clusters in
 //! large spatial databases with noise", KDD 1996.
 
+use submodular_minimax::PointLike;
+
+use super::cloud::Cloud;
 use super::error::{BaselineError, at_least};
 use super::radius::Reach;
 use super::removal::BaselineRemoval;
-use crate::disjoint_sets::DisjointSets;
-use crate::neighbours::RangeTree;
-use crate::points::{Cloud, PointLike};
 
 /// Settings of [`dbscan`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,48 +60,62 @@ pub fn dbscan<P: PointLike>(
 ) -> Result<BaselineRemoval, BaselineError> {
     config.validate()?;
     let cloud = Cloud::new(points)?;
-    let tree = RangeTree::new(&cloud.points, &[]);
-    let reach = config.reach.resolve(&cloud, &tree);
-    let sizes = cluster_sizes(&cloud, &tree, reach * reach, config.min_points);
+    let reach = config.reach.resolve(&cloud);
+    let sizes = cluster_sizes(&cloud, reach * reach, config.min_points);
     let scores = sizes.iter().map(|&size| 1.0 / size.max(1) as f64).collect();
     Ok(BaselineRemoval::new(scores, |v| {
-        sizes[v] < config.min_cluster.max(1)
+        sizes[v] < config.min_cluster
     }))
 }
 
 /// The size of each point's cluster, 0 for noise.
-fn cluster_sizes(cloud: &Cloud, tree: &RangeTree, limit: f64, min_points: usize) -> Vec<usize> {
-    let n = cloud.len();
-    let is_core: Vec<bool> = (0..n)
-        .map(|v| {
-            let mut count = 0;
-            tree.within(cloud.points[v], limit, &mut |_, _| count += 1);
-            count >= min_points
-        })
+fn cluster_sizes(cloud: &Cloud, limit: f64, min_points: usize) -> Vec<usize> {
+    let stacks = cloud.stacks();
+    let homes = homes(cloud, limit, min_points);
+    let mut size = vec![0; stacks.len()];
+    for (stack, home) in stacks.iter().zip(&homes) {
+        if let Some(home) = *home {
+            size[home] += stack.len();
+        }
+    }
+    let mut sizes = vec![0; cloud.len()];
+    for (stack, home) in stacks.iter().zip(&homes) {
+        for &v in stack {
+            sizes[v] = home.map_or(0, |home| size[home]);
+        }
+    }
+    sizes
+}
+
+/// The cluster of each place, `None` for noise. Points at one place have the same neighbourhood, so they belong together.
+fn homes(cloud: &Cloud, limit: f64, min_points: usize) -> Vec<Option<usize>> {
+    let stacks = cloud.stacks();
+    let around = |place: usize| cloud.places_within(place, limit);
+    let is_core: Vec<bool> = (0..stacks.len())
+        .map(|place| around(place).map(|n| stacks[n.1].len()).sum::<usize>() >= min_points)
         .collect();
-    let mut clusters = DisjointSets::new(n);
-    let mut home: Vec<Option<usize>> = vec![None; n];
-    for v in 0..n {
-        let mut nearest = (f64::INFINITY, u32::MAX);
-        tree.within(cloud.points[v], limit, &mut |u, d| {
-            if is_core[u as usize] {
-                if is_core[v] {
-                    clusters.join(v, u as usize);
-                }
-                if d < nearest.0 || (d == nearest.0 && u < nearest.1) {
-                    nearest = (d, u);
+    let mut cluster: Vec<Option<usize>> = vec![None; stacks.len()];
+    for seed in (0..stacks.len()).filter(|&place| is_core[place]) {
+        if cluster[seed].is_some() {
+            continue;
+        }
+        cluster[seed] = Some(seed);
+        let mut open = vec![seed];
+        while let Some(place) = open.pop() {
+            for (_, other) in around(place) {
+                if is_core[other] && cluster[other].is_none() {
+                    cluster[other] = Some(seed);
+                    open.push(other);
                 }
             }
-        });
-        home[v] = (nearest.1 != u32::MAX).then_some(nearest.1 as usize);
+        }
     }
-    let roots: Vec<Option<usize>> = home.iter().map(|h| h.map(|u| clusters.root(u))).collect();
-    let mut size = vec![0; n];
-    for root in roots.iter().flatten() {
-        size[*root] += 1;
-    }
-    roots
-        .iter()
-        .map(|root| root.map_or(0, |r| size[r]))
+    let nearest_core = |place: usize| {
+        (around(place).filter(|n| is_core[n.1]))
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+            .and_then(|n| cluster[n.1])
+    };
+    (0..stacks.len())
+        .map(|place| cluster[place].or_else(|| nearest_core(place)))
         .collect()
 }

@@ -1,9 +1,10 @@
 //! Radius outlier removal: how many neighbours are near enough?
 
+use submodular_minimax::PointLike;
+
+use super::cloud::Cloud;
 use super::error::{BaselineError, at_least, positive};
 use super::removal::BaselineRemoval;
-use crate::neighbours::{NeighbourGraph, RangeTree};
-use crate::points::{Cloud, PointLike, median};
 
 /// A distance, given outright or relative to the cloud's own spacing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,13 +65,8 @@ pub fn radius<P: PointLike>(
 ) -> Result<BaselineRemoval, BaselineError> {
     config.validate()?;
     let cloud = Cloud::new(points)?;
-    let tree = RangeTree::new(&cloud.points, &[]);
-    let needed = config.min_neighbours;
-    let graph = NeighbourGraph::new(&tree, needed, f64::INFINITY);
-    let radius = config.radius.resolve(&cloud, &tree);
-    let scores: Vec<f64> = (0..cloud.len())
-        .map(|v| kth_distance(&graph, v, needed))
-        .collect();
+    let radius = config.radius.resolve(&cloud);
+    let scores = cloud.distances_to_neighbour(config.min_neighbours);
     let outlier: Vec<bool> = scores.iter().map(|&s| s > radius).collect();
     let scores = scores.into_iter().map(|s| s * cloud.unit).collect();
     Ok(BaselineRemoval::new(scores, |v| outlier[v]))
@@ -88,24 +84,23 @@ impl Reach {
     }
 
     /// The distance in scaled units.
-    pub(super) fn resolve(&self, cloud: &Cloud, tree: &RangeTree) -> f64 {
+    pub(super) fn resolve(&self, cloud: &Cloud) -> f64 {
         match *self {
             Self::Absolute(radius) => radius / cloud.unit,
             Self::Spacing { neighbour, factor } => {
-                let graph = NeighbourGraph::new(tree, neighbour, f64::INFINITY);
-                let mut spacing: Vec<f64> = (0..cloud.len())
-                    .map(|v| kth_distance(&graph, v, neighbour))
-                    .filter(|d| d.is_finite())
-                    .collect();
+                let mut spacing = cloud.distances_to_neighbour(neighbour);
+                spacing.retain(|d| d.is_finite());
                 factor * median(&mut spacing)
             }
         }
     }
 }
 
-fn kth_distance(graph: &NeighbourGraph, v: usize, k: usize) -> f64 {
-    graph
-        .row(v)
-        .get(k - 1)
-        .map_or(f64::INFINITY, |n| n.0.sqrt())
+/// The mean of the middle two for an even count; 0 without values. Reorders.
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    match values {
+        [] => 0.0,
+        _ => 0.5 * values[(values.len() - 1) / 2] + 0.5 * values[values.len() / 2],
+    }
 }

@@ -3,10 +3,11 @@
 //! Reference: Rusu et al., "Towards 3D point cloud based object maps for household environments",
 //! Robotics and Autonomous Systems 2008; the filter of PCL and Open3D.
 
+use submodular_minimax::PointLike;
+
+use super::cloud::Cloud;
 use super::error::{BaselineError, at_least};
 use super::removal::BaselineRemoval;
-use crate::neighbours::{NeighbourGraph, RangeTree};
-use crate::points::{Cloud, PointLike};
 
 /// Settings of [`statistical`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,10 +50,8 @@ pub fn statistical<P: PointLike>(
 ) -> Result<BaselineRemoval, BaselineError> {
     config.validate()?;
     let cloud = Cloud::new(points)?;
-    let tree = RangeTree::new(&cloud.points, &[]);
-    let graph = NeighbourGraph::new(&tree, config.neighbours, f64::INFINITY);
     let mean_distance = |v: usize| {
-        let row = graph.row(v);
+        let row = cloud.nearest(v, config.neighbours);
         row.iter().map(|n| n.0.sqrt()).sum::<f64>() / row.len().max(1) as f64
     };
     let scores: Vec<f64> = (0..cloud.len()).map(mean_distance).collect();

@@ -3,10 +3,11 @@
 //! Reference: Breunig, Kriegel, Ng, Sander, "LOF: identifying density-based local outliers",
 //! SIGMOD 2000.
 
+use submodular_minimax::PointLike;
+
+use super::cloud::{Cloud, Neighbour};
 use super::error::{BaselineError, at_least, positive};
 use super::removal::BaselineRemoval;
-use crate::neighbours::{NeighbourGraph, RangeTree};
-use crate::points::{Cloud, PointLike};
 
 /// Settings of [`lof`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,17 +51,18 @@ pub fn lof<P: PointLike>(
 ) -> Result<BaselineRemoval, BaselineError> {
     config.validate()?;
     let cloud = Cloud::new(points)?;
-    let tree = RangeTree::new(&cloud.points, &[]);
-    let graph = NeighbourGraph::new(&tree, config.neighbours, f64::INFINITY);
+    let rows: Vec<Vec<Neighbour>> = (0..cloud.len())
+        .map(|v| cloud.nearest(v, config.neighbours))
+        .collect();
     let density: Vec<f64> = (0..cloud.len())
-        .map(|v| reachability_density(&graph, v))
+        .map(|v| reachability_density(&rows, v))
         .collect();
     let factor = |v: usize| {
-        let row = graph.row(v);
+        let row = &rows[v];
         if row.is_empty() {
             return 1.0;
         }
-        let around: f64 = row.iter().map(|n| density[n.1 as usize]).sum();
+        let around: f64 = row.iter().map(|n| density[n.1]).sum();
         around / row.len() as f64 / density[v]
     };
     let scores: Vec<f64> = (0..cloud.len()).map(factor).collect();
@@ -68,12 +70,9 @@ pub fn lof<P: PointLike>(
     Ok(BaselineRemoval::new(scores, |v| outlier[v]))
 }
 
-fn reachability_density(graph: &NeighbourGraph, v: usize) -> f64 {
-    let row = graph.row(v);
-    let reach = |u: usize| graph.row(u).last().map_or(0.0, |n| n.0.sqrt());
-    let sum: f64 = row
-        .iter()
-        .map(|n| n.0.sqrt().max(reach(n.1 as usize)))
-        .sum();
+fn reachability_density(rows: &[Vec<Neighbour>], v: usize) -> f64 {
+    let row = &rows[v];
+    let reach = |u: usize| rows[u].last().map_or(0.0, |n| n.0.sqrt());
+    let sum: f64 = row.iter().map(|n| n.0.sqrt().max(reach(n.1))).sum();
     1.0 / (sum / row.len().max(1) as f64 + 1e-10)
 }
