@@ -54,75 +54,73 @@ fn cpu_seconds() -> Result<f64, Box<dyn Error>> {
 
 /// Points against seconds, both axes logarithmic, with a decade's grid and the line of linear growth.
 fn svg(curve: &[(f64, f64)]) -> Result<String, std::fmt::Error> {
-    let x = |n: f64| 80.0 + 150.0 * (n.log10() - 3.0);
-    let y = |s: f64| 350.0 - 80.0 * (s.log10() + 3.0);
-    let mut text = String::from(
-        r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 580 430" font-family="sans-serif" font-size="13">
-<rect width="580" height="430" fill="#fff"/>
-<text x="80" y="20" font-size="15">CPU time of outlier removal on one core</text>
-"##,
-    );
-    for (n, label) in [
-        (1e3, "1,000"),
-        (1e4, "10,000"),
-        (1e5, "100,000"),
-        (1e6, "1,000,000"),
-    ] {
-        let x = x(n);
-        writeln!(text, r##"<path d="M{x} 30V350" stroke="#ddd"/>"##)?;
+    let mut text = axes()?;
+    if let (Some(first), Some(last)) = (curve.first(), curve.last()) {
+        let linear = (last.0, first.1 * last.0 / first.0);
+        let ((a, b), (c, d)) = (place(*first), place(linear));
         writeln!(
             text,
-            r#"<text x="{x}" y="370" text-anchor="middle">{label}</text>"#
+            r##"<path d="M{a:.1} {b:.1}L{c:.1} {d:.1}" stroke="#888" stroke-dasharray="5 4"/>"##
+        )?;
+        let (x, y) = (c - 4.0, d + 32.0);
+        writeln!(
+            text,
+            r##"<text x="{x:.1}" y="{y:.1}" text-anchor="end" fill="#666">linear growth</text>"##
         )?;
     }
-    for (s, label) in [
-        (1e-3, "1 ms"),
-        (1e-2, "10 ms"),
-        (0.1, "0.1 s"),
-        (1.0, "1 s"),
-        (10.0, "10 s"),
-    ] {
-        let y = y(s);
-        writeln!(text, r##"<path d="M80 {y}H530" stroke="#ddd"/>"##)?;
+    text += r##"<polyline fill="none" stroke="#1f5fa8" stroke-width="2" points=""##;
+    for &point in curve {
+        let (x, y) = place(point);
+        write!(text, "{x:.1},{y:.1} ")?;
+    }
+    text += "\"/>\n";
+    for &point in curve {
+        let (x, y) = place(point);
         writeln!(
             text,
-            r#"<text x="72" y="{}" text-anchor="end">{label}</text>"#,
+            r##"<circle cx="{x:.1}" cy="{y:.1}" r="3.5" fill="#1f5fa8"/>"##
+        )?;
+    }
+    text += "</svg>\n";
+    Ok(text)
+}
+
+/// Pixels of so many points in so many seconds.
+fn place((points, seconds): (f64, f64)) -> (f64, f64) {
+    (
+        80.0 + 150.0 * (points.log10() - 3.0),
+        350.0 - 80.0 * (seconds.log10() + 3.0),
+    )
+}
+
+/// The picture without its curve.
+fn axes() -> Result<String, std::fmt::Error> {
+    let mut text = String::from(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="580" height="420" viewBox="0 0 580 420" font-family="sans-serif" font-size="13">
+<rect width="580" height="420" fill="#fff"/>
+<text x="80" y="20" font-size="15">CPU time of outlier removal, one core</text>
+"##,
+    );
+    for points in ["1000", "10000", "100000", "1000000"] {
+        let x = place((points.parse().unwrap_or(1e3), 1.0)).0;
+        writeln!(text, r##"<path d="M{x:.1} 30V350" stroke="#ddd"/>"##)?;
+        writeln!(
+            text,
+            r#"<text x="{x:.1}" y="370" text-anchor="middle">{points}</text>"#
+        )?;
+    }
+    for seconds in ["0.001", "0.01", "0.1", "1", "10"] {
+        let y = place((1e3, seconds.parse().unwrap_or(1.0))).1;
+        writeln!(text, r##"<path d="M80 {y:.1}H530" stroke="#ddd"/>"##)?;
+        writeln!(
+            text,
+            r#"<text x="72" y="{:.1}" text-anchor="end">{seconds} s</text>"#,
             y + 4.0
         )?;
     }
     writeln!(
         text,
-        r#"<text x="305" y="400" text-anchor="middle">points</text>"#
+        r#"<text x="305" y="402" text-anchor="middle">points</text>"#
     )?;
-    if let (Some(first), Some(last)) = (curve.first(), curve.last()) {
-        let (from, to) = (
-            (x(first.0), y(first.1)),
-            (x(last.0), y(first.1 * last.0 / first.0)),
-        );
-        let (x, y) = (to.0 - 8.0, to.1 + 22.0);
-        let line = format!("M{:.1} {:.1}L{:.1} {:.1}", from.0, from.1, to.0, to.1);
-        writeln!(
-            text,
-            r##"<path d="{line}" stroke="#888" stroke-dasharray="5 4"/>"##
-        )?;
-        writeln!(
-            text,
-            r##"<text x="{x:.1}" y="{y:.1}" text-anchor="end" fill="#666">linear</text>"##
-        )?;
-    }
-    text += r##"<polyline fill="none" stroke="#1f5fa8" stroke-width="2" points=""##;
-    for &(n, s) in curve {
-        write!(text, "{:.1},{:.1} ", x(n), y(s))?;
-    }
-    text += "\"/>\n";
-    for &(n, s) in curve {
-        writeln!(
-            text,
-            r##"<circle cx="{:.1}" cy="{:.1}" r="3.5" fill="#1f5fa8"/>"##,
-            x(n),
-            y(s)
-        )?;
-    }
-    text += "</svg>\n";
     Ok(text)
 }
