@@ -1,8 +1,8 @@
 //! Matches pairs of images and estimates their relative pose, for the comparison in `two_view.py`.
 //!
-//! Usage: two_view FX FY CX CY FIRST SECOND [FIRST SECOND...]; prints per pair "pair N microseconds T geometry G
-//! parallax P homography H rotation R", the 12 numbers of the motion (row by row, zeros when refused), and N lines
-//! "x1 y1 x2 y2".
+//! Usage: two_view raw|aligned FX FY CX CY K1 K2 P1 P2 K3 FIRST SECOND [FIRST SECOND...]; prints per pair "pair N
+//! microseconds T alignment A geometry G parallax P residual Q sigma S homography H rotation R", the 12 numbers of the
+//! motion (row by row, zeros when refused), and N lines "x1 y1 x2 y2" (undistorted pixels).
 #![allow(
     clippy::print_stdout,
     clippy::disallowed_methods,
@@ -16,7 +16,10 @@ use std::time::Instant;
 
 use cpu_time::cpu_seconds;
 use edge_slam::camera::{Camera, PinholeCamera, RadialTangential};
-use edge_slam::feature::{Features, MatchConfig, OrbExtractor, match_descriptors};
+use edge_slam::feature::{
+    AlignConfig, Features, Keypoint, MatchConfig, OrbExtractor, align_matches, match_descriptors,
+};
+use edge_slam::image::GrayImage;
 use edge_slam::nalgebra::{Matrix4, Point2};
 use edge_slam::odometry::OdometryConfig;
 use edge_slam::sequence::decode_gray;
@@ -26,51 +29,39 @@ use rand::SeedableRng;
 fn main() -> Result<(), Box<dyn Error>> {
     let origin = Instant::now();
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (numbers, paths) = arguments.split_at(9.min(arguments.len()));
-    let n: Vec<f64> = numbers
-        .iter()
-        .map(|text| text.parse())
-        .collect::<Result<_, _>>()?;
-    let [fx, fy, cx, cy, k1, k2, p1, p2, k3] = n[..] else {
-        return Err("usage".into());
-    };
-    let distortion = RadialTangential { k1, k2, p1, p2, k3 };
-    let camera = Camera {
-        pinhole: PinholeCamera::new(fx, fy, cx, cy)?,
-        distortion,
-    };
+    let (mode, rest) = arguments.split_first().ok_or("usage")?;
+    let (numbers, paths) = rest.split_at(9.min(rest.len()));
+    let camera = camera(numbers)?;
     let extractor = OrbExtractor::new(OdometryConfig::default().orb)?;
-    let features = |path: &String| -> Result<Features, Box<dyn Error>> {
-        Ok(extractor.extract(&decode_gray(&std::fs::read(path)?)?.view()))
+    let view = |path: &String| -> Result<(GrayImage, Features), Box<dyn Error>> {
+        let image = decode_gray(&std::fs::read(path)?)?;
+        let features = extractor.extract(&image.view());
+        Ok((image, features))
     };
     for pair in paths.chunks_exact(2) {
-        let (a, b) = (features(&pair[0])?, features(&pair[1])?);
-        let matches = match_descriptors(&a.descriptors, &b.descriptors, &MatchConfig::default());
-        let pixel = |f: &Features, i: usize| {
-            let k = &f.keypoints[i];
-            camera
-                .undistort(&Point2::new(f64::from(k.x), f64::from(k.y)))
-                .unwrap_or_default()
-        };
-        let first: Vec<_> = matches.iter().map(|m| pixel(&a, m.first)).collect();
-        let second: Vec<_> = matches.iter().map(|m| pixel(&b, m.second)).collect();
-        let estimate = || {
-            let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
-            estimate_two_view(
-                &first,
-                &second,
-                &camera.pinhole,
-                &TwoViewConfig::default(),
-                rng,
-            )
-        };
-        let start = cpu_seconds(origin);
-        let mut found = estimate();
-        for _ in 1..8 {
-            found = estimate();
+        let (a, b) = (view(&pair[0])?, view(&pair[1])?);
+        let matches =
+            match_descriptors(&a.1.descriptors, &b.1.descriptors, &MatchConfig::default());
+        let keypoints: [&[Keypoint]; 2] = [&a.1.keypoints, &b.1.keypoints];
+        let mut config = AlignConfig::default();
+        if mode == "raw" {
+            config.max_shift = -1.0;
         }
-        let micros = (cpu_seconds(origin) - start) / 8.0 * 1e6;
-        print!("pair {} microseconds {micros:.0} ", matches.len());
+        let (places, alignment) = timed(origin, || {
+            align_matches([&a.0.view(), &b.0.view()], keypoints, &matches, &config)
+        });
+        let pixel = |p: [f64; 2]| camera.undistort(&Point2::from(p)).unwrap_or_default();
+        let first: Vec<_> = places.iter().map(|p| pixel(p.first)).collect();
+        let second: Vec<_> = places.iter().map(|p| pixel(p.second)).collect();
+        let (found, micros) = timed(origin, || {
+            let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+            let config = TwoViewConfig::default();
+            estimate_two_view(&first, &second, &camera.pinhole, &config, rng)
+        });
+        print!(
+            "pair {} microseconds {micros:.0} alignment {alignment:.0} ",
+            places.len()
+        );
         print_motion(found.ok().as_ref());
         for (p, q) in first.iter().zip(&second) {
             println!("{:.4} {:.4} {:.4} {:.4}", p.x, p.y, q.x, q.y);
@@ -79,19 +70,44 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+fn camera(numbers: &[String]) -> Result<Camera, Box<dyn Error>> {
+    let n: Vec<f64> = numbers
+        .iter()
+        .map(|text| text.parse())
+        .collect::<Result<_, _>>()?;
+    let [fx, fy, cx, cy, k1, k2, p1, p2, k3] = n[..] else {
+        return Err("usage".into());
+    };
+    Ok(Camera {
+        pinhole: PinholeCamera::new(fx, fy, cx, cy)?,
+        distortion: RadialTangential { k1, k2, p1, p2, k3 },
+    })
+}
+
+/// The last of eight results, and the mean microseconds on the processor.
+fn timed<R>(origin: Instant, mut work: impl FnMut() -> R) -> (R, f64) {
+    let start = cpu_seconds(origin);
+    let mut result = work();
+    for _ in 1..8 {
+        result = work();
+    }
+    (result, (cpu_seconds(origin) - start) / 8.0 * 1e6)
+}
+
 /// The rest of the pair's line, and the line of the motion.
 fn print_motion(found: Option<&TwoView>) {
     let motion = match found {
         Some(f) => {
-            let parallax = f.parallax.to_degrees();
+            let [parallax, residual, sigma] =
+                [f.parallax, f.residual_parallax, f.direction_sigma].map(f64::to_degrees);
             println!(
-                "geometry {:?} parallax {parallax:.3} homography {:.3} rotation {:.3}",
+                "geometry {:?} parallax {parallax:.3} residual {residual:.3} sigma {sigma:.2} homography {:.3} rotation {:.3}",
                 f.geometry, f.homography_share, f.rotation_share
             );
             f.second_from_first.to_homogeneous()
         }
         None => {
-            println!("geometry None parallax 0 homography 0 rotation 0");
+            println!("geometry None parallax 0 residual 0 sigma 0 homography 0 rotation 0");
             Matrix4::zeros()
         }
     };

@@ -72,7 +72,7 @@ pub fn track_points(
 
 /// Grey levels and gradients of a patch; buffers are kept from point to point.
 #[derive(Debug, Default)]
-struct Patch {
+pub(super) struct Patch {
     grey: Vec<f32>,
     across: Vec<f32>,
     down: Vec<f32>,
@@ -115,7 +115,7 @@ impl Patch {
     }
 
     /// Gauss-Newton on one level; the patch's place in the second image.
-    fn align(
+    pub(super) fn align(
         &mut self,
         from: &GrayView<'_>,
         to: &GrayView<'_>,
@@ -136,12 +136,7 @@ impl Patch {
         let mut here = start;
         for _ in 0..config.steps.max(1) {
             sample(to, here, radius, &mut self.wide)?;
-            let (mut gx, mut gy) = (0.0, 0.0);
-            for (k, (old, new)) in self.grey.iter().zip(&self.wide).enumerate() {
-                let difference = f64::from(old - new);
-                gx += difference * f64::from(self.across[k]);
-                gy += difference * f64::from(self.down[k]);
-            }
+            let [gx, gy] = self.slope();
             let step = [
                 (c * gx - b * gy) / determinant,
                 (a * gy - b * gx) / determinant,
@@ -166,29 +161,37 @@ impl Patch {
         self.grey.clear();
         self.across.clear();
         self.down.clear();
+        let half = |(ahead, behind): (&f32, &f32)| 0.5 * (ahead - behind);
         for row in 1..=side {
-            for column in 1..=side {
-                let at = row * stride + column;
-                let wide = &self.wide;
-                self.grey.push(wide[at]);
-                self.across.push(0.5 * (wide[at + 1] - wide[at - 1]));
-                self.down
-                    .push(0.5 * (wide[at + stride] - wide[at - stride]));
-            }
+            let line = |row: usize| &self.wide[row * stride..(row + 1) * stride];
+            let here = line(row);
+            self.grey.extend(&here[1..=side]);
+            self.across.extend(here[2..].iter().zip(here).map(half));
+            let vertical = line(row + 1)[1..=side].iter().zip(&line(row - 1)[1..]);
+            self.down.extend(vertical.map(half));
         }
         Some(())
     }
 
     fn hessian(&self) -> [f64; 3] {
-        let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-        for (&x, &y) in self.across.iter().zip(&self.down) {
-            let (x, y) = (f64::from(x), f64::from(y));
-            a += x * x;
-            b += x * y;
-            c += y * y;
-        }
-        [a, b, c]
+        let (x, y) = (&self.across, &self.down);
+        [(x, x), (x, y), (y, y)].map(|(a, b)| dot(a.iter().copied(), b))
     }
+
+    /// Σ G (I₁ − I₂) for the patch that was sampled last.
+    fn slope(&self) -> [f64; 2] {
+        let difference = || self.grey.iter().zip(&self.wide).map(|(old, new)| old - new);
+        [&self.across, &self.down].map(|gradient| dot(difference(), gradient))
+    }
+}
+
+/// Eight partial sums, so that the compiler may add eight products at once.
+fn dot(a: impl Iterator<Item = f32>, b: &[f32]) -> f64 {
+    let mut lanes = [0.0_f32; 8];
+    for (k, (a, b)) in a.zip(b).enumerate() {
+        lanes[k % 8] += a * b;
+    }
+    lanes.iter().map(|&lane| f64::from(lane)).sum()
 }
 
 /// The square of pixels around a sub-pixel place, bilinear; `None` where it leaves the image.
@@ -206,18 +209,18 @@ fn sample(view: &GrayView<'_>, [x, y]: [f64; 2], radius: usize, into: &mut Vec<f
     }
     let (left, top) = (x.floor() as usize - radius, y.floor() as usize - radius);
     let (a, b) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
+    let [own, east] = [(1.0 - a) * (1.0 - b), a * (1.0 - b)];
+    let [south, corner] = [(1.0 - a) * b, a * b];
     let side = 2 * radius + 1;
     into.clear();
     for row in top..top + side {
-        let (upper, lower) = (&view.row(row)[left..], &view.row(row + 1)[left..]);
-        for column in 0..side {
-            let blend = |line: &[u8]| {
-                let (p, q) = (f32::from(line[column]), f32::from(line[column + 1]));
-                p + a * (q - p)
-            };
-            let (p, q) = (blend(upper), blend(lower));
-            into.push(p + b * (q - p));
-        }
+        let [upper, lower] = [row, row + 1].map(|row| &view.row(row)[left..=left + side]);
+        let right = upper[1..].iter().zip(&lower[1..]);
+        let blend = |((p, r), (q, s)): ((&u8, &u8), (&u8, &u8))| {
+            let [p, q, r, s] = [p, q, r, s].map(|&grey| f32::from(grey));
+            own * p + east * q + (south * r + corner * s)
+        };
+        into.extend(upper.iter().zip(lower).zip(right).map(blend));
     }
     Some(())
 }

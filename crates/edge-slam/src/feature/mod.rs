@@ -1,5 +1,6 @@
 //! Point features: FAST corners, orientation, rotated BRIEF, ORB over a pyramid, matching, and KLT tracking.
 
+mod align;
 mod balance;
 mod brief;
 mod config;
@@ -11,6 +12,7 @@ mod orb;
 mod orientation;
 mod spread;
 
+pub use align::{AlignConfig, AlignedMatch, align_matches};
 pub use balance::balanced_corners;
 pub use brief::Descriptor;
 pub use config::{OrbConfig, OrbConfigError, Selection};

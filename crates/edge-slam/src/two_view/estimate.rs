@@ -4,102 +4,19 @@
 //! 2. Competing models: a homography and a pure rotation. The homography's share of the scores of Mur-Artal et
 //!    al. 2015, and the share of inliers that a rotation explains, say what the scene allows.
 //! 3. Of the four motions of E the one with most points in front of both cameras; a last polish on its inliers.
+//! 4. The motion counts as general only if parallax is left when the best rotation is taken out, and if parts of the
+//!    image agree about the direction.
 
-use nalgebra::{Isometry3, Matrix3, Point2, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point2};
 use rand::Rng;
 
-use super::essential::{candidate_poses, essential_of};
-use super::homography::{homography_from_points, transfer};
-use super::ransac::{Best, Schedule, search};
-use super::refine::refine_relative_pose;
-use super::rotation::fit_rotation;
-use super::{Triangulated, essential_from_five, sampson, triangulate};
+use super::config::check;
+use super::essential::essential_of;
+use super::matches::Matches;
+use super::ransac::Schedule;
+use super::verdict::Rivals;
+use super::{Triangulated, TwoViewConfig, TwoViewError};
 use crate::camera::PinholeCamera;
-
-/// Parameters of [`estimate_two_view`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TwoViewConfig {
-    /// Sampson distance up to which a match is an inlier, pixels, > 0. Default 1.
-    pub threshold: f64,
-    /// Probability of having drawn a clean sample, in (0, 1). Default 0.999.
-    pub confidence: f64,
-    /// Most samples drawn, >= 1. Default 500.
-    pub max_samples: usize,
-    /// Fewest inliers of a pose, >= 6. Default 20.
-    pub min_inliers: usize,
-    /// Fewest inliers of a pose that is trusted. Default 50 (Mur-Artal et al. 2015 ask for as many points).
-    pub min_confident_inliers: usize,
-    /// Least share of inliers in front of both cameras, 0..=1. Default 0.7.
-    pub min_in_front: f64,
-    /// Least share of all matches that must be inliers, 0..=1. Default 0.4: with fewer, outliers that agree by
-    /// chance choose the direction.
-    pub min_inlier_share: f64,
-    /// Least median angle between matched rays, radians, >= 0. Default 1.5 degrees: of pairs of a hand-held
-    /// sequence with a true baseline under 1 cm, those above are rare.
-    pub min_parallax: f64,
-    /// Homography scores above this share call the scene planar, 0..=1. Default 0.45 (Mur-Artal et al. 2015).
-    pub planar_share: f64,
-    /// A rotation that explains this share of the inliers, within twice the threshold, is the whole motion,
-    /// 0..=1. Default 0.8.
-    pub rotation_share: f64,
-}
-
-impl Default for TwoViewConfig {
-    fn default() -> Self {
-        Self {
-            threshold: 1.0,
-            confidence: 0.999,
-            max_samples: 500,
-            min_inliers: 20,
-            min_confident_inliers: 50,
-            min_in_front: 0.7,
-            min_inlier_share: 0.4,
-            min_parallax: 1.5_f64.to_radians(),
-            planar_share: 0.45,
-            rotation_share: 0.8,
-        }
-    }
-}
-
-/// Why no relative pose was estimated.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TwoViewError {
-    /// The two slices differ in length.
-    #[error("{first} pixels of the first view cannot be matched with {second} of the second")]
-    LengthMismatch {
-        /// Pixels of the first view.
-        first: usize,
-        /// Pixels of the second view.
-        second: usize,
-    },
-    /// A coordinate is NaN or infinite.
-    #[error("match {index} has a coordinate that is not finite")]
-    NonFinite {
-        /// Which match.
-        index: usize,
-    },
-    /// Not enough matches agree.
-    #[error(
-        "{inliers} matches agree with one motion, {needed} are needed; take frames that overlap more"
-    )]
-    TooFewInliers {
-        /// Matches that agree.
-        inliers: usize,
-        /// Matches needed.
-        needed: usize,
-    },
-    /// A parameter is outside its range.
-    #[error("{name} is {value}, but must be {range}")]
-    Parameter {
-        /// Field of the configuration.
-        name: &'static str,
-        /// What was given.
-        value: f64,
-        /// What is allowed.
-        range: &'static str,
-    },
-}
 
 /// What the two views allow to say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +44,11 @@ pub struct TwoView {
     pub points: Vec<Option<Triangulated>>,
     /// Median angle between the rays of the inliers, radians.
     pub parallax: f64,
+    /// Median angle left between the rays of the inliers after the rotation that explains them best, radians.
+    pub residual_parallax: f64,
+    /// Standard deviation of the translation's direction along its worst axis, radians: from how much parts of the
+    /// image disagree (see [`direction_deviation`](super::direction_deviation)); infinite when undetermined.
+    pub direction_sigma: f64,
     /// S_H / (S_H + S_E).
     pub homography_share: f64,
     /// Share of the inliers that a rotation alone explains.
@@ -178,327 +100,23 @@ pub fn estimate_two_view(
     if inliers.len() < config.min_inliers {
         return Err(too_few(inliers.len()));
     }
-    let homography_share = matches.homography_share(&essential_of(&pose), schedule, rng);
-    let rotation = matches.search_rotation(schedule, rng);
-    Ok(matches.judge(
-        pose,
-        inliers,
-        homography_share,
-        rotation,
-        essential.samples,
-        config,
-    ))
-}
-
-fn check(
-    first: &[Point2<f64>],
-    second: &[Point2<f64>],
-    config: &TwoViewConfig,
-) -> Result<(), TwoViewError> {
-    if first.len() != second.len() {
-        return Err(TwoViewError::LengthMismatch {
-            first: first.len(),
-            second: second.len(),
-        });
-    }
-    let usable = |p: &Point2<f64>| p.x.abs() < 1e9 && p.y.abs() < 1e9;
-    if let Some(index) = first
-        .iter()
-        .zip(second)
-        .position(|(a, b)| !(usable(a) && usable(b)))
-    {
-        return Err(TwoViewError::NonFinite { index });
-    }
-    let parameter = |name, value: f64, good: bool, range| {
-        if good {
-            Ok(())
-        } else {
-            Err(TwoViewError::Parameter { name, value, range })
-        }
+    let rivals = Rivals {
+        homography_share: matches.homography_share(&essential_of(&pose), schedule, rng),
+        rotation: matches.search_rotation(schedule, rng),
     };
-    let TwoViewConfig {
-        threshold,
-        confidence,
-        ..
-    } = *config;
-    #[expect(clippy::cast_precision_loss, reason = "only shown in a message")]
-    let (samples, inliers) = (config.max_samples as f64, config.min_inliers as f64);
-    parameter(
-        "threshold",
-        threshold,
-        threshold > 0.0 && threshold < 1e6,
-        "positive",
-    )?;
-    let probable = confidence > 0.0 && confidence < 1.0;
-    parameter("confidence", confidence, probable, "between 0 and 1")?;
-    parameter("max_samples", samples, config.max_samples > 0, "at least 1")?;
-    parameter(
-        "min_inliers",
-        inliers,
-        config.min_inliers >= 6,
-        "at least 6",
-    )
-}
-
-/// Matched rays (z = 1) and the inlier threshold in their unit.
-struct Matches {
-    first: Vec<Vector3<f64>>,
-    second: Vec<Vector3<f64>>,
-    sigma: f64,
-}
-
-impl Matches {
-    fn search_essential(
-        &self,
-        schedule: Schedule,
-        rng: &mut impl Rng,
-    ) -> Option<Best<Matrix3<f64>>> {
-        let square = self.sigma * self.sigma;
-        search(
-            self.first.len(),
-            schedule,
-            rng,
-            |sample: &[usize; 5]| {
-                essential_from_five(
-                    &sample.map(|i| self.first[i]),
-                    &sample.map(|i| self.second[i]),
-                )
-            },
-            |model, i| sampson(model, &self.first[i], &self.second[i]).powi(2) / square,
-            |model| self.polish_essential(model),
-        )
+    let mut found = matches.weigh(pose, inliers, &rivals);
+    found.samples = essential.samples;
+    found.geometry = matches.geometry(&found, config);
+    if let (Geometry::PureRotation, Some(rotation)) = (found.geometry, rivals.rotation) {
+        found.second_from_first = Isometry3::from_parts(Default::default(), rotation);
     }
-
-    /// A few steps of refinement on the inliers of a new best matrix.
-    fn polish_essential(&self, model: &Matrix3<f64>) -> Option<Matrix3<f64>> {
-        let pose = candidate_poses(model)?[0];
-        let (a, b) = self.pick(&self.inliers(model, 2.0));
-        (a.len() >= 8).then(|| essential_of(&refine_relative_pose(&pose, &a, &b, self.sigma, 4)))
-    }
-
-    fn inliers(&self, model: &Matrix3<f64>, thresholds: f64) -> Vec<usize> {
-        let near = |&i: &usize| {
-            sampson(model, &self.first[i], &self.second[i]).abs() < thresholds * self.sigma
-        };
-        (0..self.first.len()).filter(near).collect()
-    }
-
-    fn pick(&self, indices: &[usize]) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
-        indices
-            .iter()
-            .map(|&i| (self.first[i], self.second[i]))
-            .unzip()
-    }
-
-    /// The candidate with most points in front of both cameras.
-    fn best_pose(&self, model: &Matrix3<f64>) -> Option<Isometry3<f64>> {
-        let inliers = self.inliers(model, 1.0);
-        let in_front = |pose: &Isometry3<f64>| {
-            inliers
-                .iter()
-                .filter(|&&i| is_in_front(pose, &self.first[i], &self.second[i]))
-                .count()
-        };
-        let candidates = candidate_poses(model)?;
-        let counts = candidates.each_ref().map(in_front);
-        (0..4)
-            .max_by_key(|&k| (counts[k], 4 - k))
-            .map(|k| candidates[k])
-    }
-
-    /// Alternates refinement and choice of inliers.
-    fn polish_pose(&self, mut pose: Isometry3<f64>) -> (Isometry3<f64>, Vec<usize>) {
-        for _ in 0..3 {
-            let (a, b) = self.pick(&self.inliers(&essential_of(&pose), 3.0));
-            pose = refine_relative_pose(&pose, &a, &b, 0.5 * self.sigma, 10);
-        }
-        (pose, self.inliers(&essential_of(&pose), 1.0))
-    }
-
-    fn search_rotation(
-        &self,
-        schedule: Schedule,
-        rng: &mut impl Rng,
-    ) -> Option<UnitQuaternion<f64>> {
-        let square = 4.0 * self.sigma * self.sigma;
-        let distance = |rotation: &UnitQuaternion<f64>, i: usize| {
-            let turned = rotation * self.first[i];
-            let (x, y) = (turned.x / turned.z, turned.y / turned.z);
-            let near = (x - self.second[i].x).powi(2) + (y - self.second[i].y).powi(2);
-            if turned.z > 0.0 {
-                near / square
-            } else {
-                f64::INFINITY
-            }
-        };
-        let refit = |rotation: &UnitQuaternion<f64>| {
-            let near: Vec<usize> = (0..self.first.len())
-                .filter(|&i| distance(rotation, i) < 4.0)
-                .collect();
-            let (a, b) = self.pick(&near);
-            fit_rotation(&a, &b)
-        };
-        let fit = |sample: &[usize; 2]| {
-            let (a, b) = self.pick(sample);
-            fit_rotation(&a, &b).into_iter().collect()
-        };
-        search(self.first.len(), schedule, rng, fit, distance, refit).map(|best| best.model)
-    }
-
-    /// S_H / (S_H + S_E): both scores count how far inside their thresholds the matches are.
-    fn homography_share(
-        &self,
-        essential: &Matrix3<f64>,
-        schedule: Schedule,
-        rng: &mut impl Rng,
-    ) -> f64 {
-        let square = self.sigma * self.sigma;
-        let both = |h: &(Matrix3<f64>, Matrix3<f64>), i: usize| {
-            let (a, b) = (&self.first[i], &self.second[i]);
-            [transfer(&h.0, a, b) / square, transfer(&h.1, b, a) / square]
-        };
-        let with_inverse = |h: Matrix3<f64>| h.try_inverse().map(|inverse| (h, inverse));
-        let fit = |indices: &[usize]| {
-            let (a, b) = self.pick(indices);
-            homography_from_points(&a, &b).and_then(with_inverse)
-        };
-        let schedule = Schedule {
-            most: schedule.most.min(200),
-            ..schedule
-        };
-        let best = search(
-            self.first.len(),
-            schedule,
-            rng,
-            |sample: &[usize; 4]| fit(sample).into_iter().collect(),
-            |model, i| both(model, i).into_iter().fold(0.0, f64::max) / PLANE_LIMIT,
-            |model| {
-                let near =
-                    |&i: &usize| both(model, i).into_iter().fold(0.0, f64::max) < PLANE_LIMIT;
-                fit(&(0..self.first.len()).filter(near).collect::<Vec<_>>())
-            },
-        );
-        let count = 0..self.first.len();
-        let lines = count
-            .clone()
-            .flat_map(|i| self.line_distances(essential, i));
-        let lines: f64 = lines.map(|d| gain(d, LINE_LIMIT)).sum();
-        let plane = best.map_or(0.0, |best| {
-            count
-                .flat_map(|i| both(&best.model, i))
-                .map(|d| gain(d, PLANE_LIMIT))
-                .sum()
-        });
-        if plane + lines > 0.0 {
-            plane / (plane + lines)
-        } else {
-            1.0
-        }
-    }
-
-    /// Squared distances to the epipolar lines in both views, in thresholds.
-    fn line_distances(&self, essential: &Matrix3<f64>, i: usize) -> [f64; 2] {
-        let line = essential * self.first[i];
-        let back = essential.tr_mul(&self.second[i]);
-        let product = self.second[i].dot(&line).powi(2) / (self.sigma * self.sigma);
-        [line, back].map(|l| product / (l.x * l.x + l.y * l.y).max(f64::MIN_POSITIVE))
-    }
-
-    fn judge(
-        &self,
-        pose: Isometry3<f64>,
-        inliers: Vec<usize>,
-        homography_share: f64,
-        rotation: Option<UnitQuaternion<f64>>,
-        samples: usize,
-        config: &TwoViewConfig,
-    ) -> TwoView {
-        let rotation_share = rotation.map_or(0.0, |r| self.explained_by(&r, &inliers));
-        let points: Vec<_> = inliers
-            .iter()
-            .map(|&i| triangulate(&self.first[i], &self.second[i], &pose))
-            .collect();
-        let parallax = self.median_parallax(&pose, &inliers);
-        let in_front = inliers
-            .iter()
-            .filter(|&&i| is_in_front(&pose, &self.first[i], &self.second[i]))
-            .count();
-        #[expect(clippy::cast_precision_loss, reason = "small counts")]
-        let front_share = in_front as f64 / inliers.len() as f64;
-        #[expect(clippy::cast_precision_loss, reason = "small counts")]
-        let inlier_share = inliers.len() as f64 / self.first.len() as f64;
-        let geometry = if rotation_share > config.rotation_share {
-            Geometry::PureRotation
-        } else if front_share < config.min_in_front
-            || parallax < config.min_parallax
-            || inlier_share < config.min_inlier_share
-            || inliers.len() < config.min_confident_inliers
-        {
-            Geometry::Weak
-        } else if homography_share > config.planar_share {
-            Geometry::Planar
-        } else {
-            Geometry::General
-        };
-        let second_from_first = match (geometry, rotation) {
-            (Geometry::PureRotation, Some(r)) => Isometry3::from_parts(Default::default(), r),
-            _ => pose,
-        };
-        TwoView {
-            geometry,
-            second_from_first,
-            inliers,
-            points,
-            parallax,
-            homography_share,
-            rotation_share,
-            samples,
-        }
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "small counts")]
-    fn explained_by(&self, rotation: &UnitQuaternion<f64>, inliers: &[usize]) -> f64 {
-        let matrix = rotation.to_rotation_matrix();
-        let limit = 4.0 * self.sigma * self.sigma;
-        let near =
-            |&&i: &&usize| transfer(matrix.matrix(), &self.first[i], &self.second[i]) < limit;
-        inliers.iter().filter(near).count() as f64 / inliers.len() as f64
-    }
-
-    fn median_parallax(&self, pose: &Isometry3<f64>, inliers: &[usize]) -> f64 {
-        let angle = |&i: &usize| (pose.rotation * self.first[i]).angle(&self.second[i]);
-        let mut angles: Vec<f64> = inliers.iter().map(angle).collect();
-        angles.sort_by(f64::total_cmp);
-        angles.get(angles.len() / 2).copied().unwrap_or(0.0)
-    }
-}
-
-/// 95 % points of χ² with one and two degrees of freedom.
-const LINE_LIMIT: f64 = 3.84;
-const PLANE_LIMIT: f64 = 5.99;
-
-fn gain(square: f64, limit: f64) -> f64 {
-    if square < limit {
-        PLANE_LIMIT - square
-    } else {
-        0.0
-    }
-}
-
-/// Whether the rays meet in front of both cameras: signs of the depths, without division.
-fn is_in_front(pose: &Isometry3<f64>, first: &Vector3<f64>, second: &Vector3<f64>) -> bool {
-    let a = pose.rotation * first;
-    let t = pose.translation.vector;
-    let (aa, ab, bb) = (a.dot(&a), a.dot(second), second.dot(second));
-    let (at, bt) = (a.dot(&t), second.dot(&t));
-    // Least squares of λ a + t = μ b; the determinant aa bb − ab² is never negative.
-    ab * bt - bb * at > 0.0 && aa * bt - ab * at > 0.0
+    Ok(found)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Point3;
+    use nalgebra::{Point3, Vector3};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -597,6 +215,55 @@ mod tests {
                 < 0.1
         );
         assert_eq!(found.second_from_first.translation.vector.norm(), 0.0);
+    }
+
+    #[test]
+    fn no_turn_is_ever_trusted() {
+        let rng = &mut Pcg64::seed_from_u64(31);
+        for trial in 0..40 {
+            let mut unit = || rng.random::<f64>() - 0.5;
+            let turn = Vector3::new(0.3 * unit(), 0.6 * unit(), 0.3 * unit());
+            // A few millimetres at a depth of metres, as when a hand turns a camera.
+            let shift = Vector3::new(unit(), unit(), unit()).normalize() * 0.004;
+            let pairs = views(&Isometry3::new(shift, turn), 200, 40, |_, _, r| {
+                1.5 + 3.0 * r
+            });
+            let rng = &mut Pcg64::seed_from_u64(trial);
+            let config = TwoViewConfig::default();
+            let found = estimate_two_view(&pairs.0, &pairs.1, &camera(), &config, rng);
+            assert!(
+                !found.is_ok_and(|found| found.is_confident()),
+                "{trial} {turn}"
+            );
+        }
+    }
+
+    #[test]
+    fn each_sign_of_a_turn_withdraws_the_trust() {
+        let motion = Isometry3::new(Vector3::new(0.5, 0.1, -0.1), Vector3::new(0.05, -0.1, 0.03));
+        let pairs = views(&motion, 300, 60, |_, _, r| 2.0 + 4.0 * r);
+        let run = |config: &TwoViewConfig| {
+            let rng = &mut Pcg64::seed_from_u64(1);
+            estimate_two_view(&pairs.0, &pairs.1, &camera(), config, rng).unwrap()
+        };
+        let config = TwoViewConfig::default();
+        let found = run(&config);
+        assert!(found.is_confident());
+        assert!(found.residual_parallax > 1_f64.to_radians());
+        assert!(found.residual_parallax < found.parallax);
+        assert!(found.direction_sigma < 2_f64.to_radians());
+        let min_residual_parallax = 1.01 * found.residual_parallax;
+        let strict = TwoViewConfig {
+            min_residual_parallax,
+            ..config
+        };
+        assert_eq!(run(&strict).geometry, Geometry::Weak);
+        let max_direction_sigma = 0.99 * found.direction_sigma;
+        let strict = TwoViewConfig {
+            max_direction_sigma,
+            ..config
+        };
+        assert_eq!(run(&strict).geometry, Geometry::Weak);
     }
 
     #[test]

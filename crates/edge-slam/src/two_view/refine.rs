@@ -95,7 +95,7 @@ fn essential_slopes(pose: &Isometry3<f64>) -> ([Matrix3<f64>; 5], [Vector3<f64>;
     )
 }
 
-fn normal_equations(
+pub(super) fn normal_equations(
     pose: &Isometry3<f64>,
     first: &[Vector3<f64>],
     second: &[Vector3<f64>],

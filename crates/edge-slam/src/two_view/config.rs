@@ -1,0 +1,148 @@
+//! What the estimate of two views can be told, and what it refuses.
+
+use nalgebra::Point2;
+
+/// Parameters of [`estimate_two_view`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TwoViewConfig {
+    /// Sampson distance up to which a match is an inlier, pixels, > 0. Default 1.
+    pub threshold: f64,
+    /// Probability of having drawn a clean sample, in (0, 1). Default 0.999.
+    pub confidence: f64,
+    /// Most samples drawn, >= 1. Default 500.
+    pub max_samples: usize,
+    /// Fewest inliers of a pose, >= 6. Default 20.
+    pub min_inliers: usize,
+    /// Fewest inliers of a pose that is trusted. Default 50 (Mur-Artal et al. 2015 ask for as many points).
+    pub min_confident_inliers: usize,
+    /// Least share of inliers in front of both cameras, 0..=1. Default 0.7.
+    pub min_in_front: f64,
+    /// Least share of all matches that must be inliers, 0..=1. Default 0.4: with fewer, outliers that agree by
+    /// chance choose the direction.
+    pub min_inlier_share: f64,
+    /// Least median angle between matched rays, radians, >= 0. Default 1.5 degrees: of pairs of a hand-held
+    /// sequence with a true baseline under 1 cm, those above are rare.
+    pub min_parallax: f64,
+    /// Homography scores above this share call the scene planar, 0..=1. Default 0.45 (Mur-Artal et al. 2015).
+    pub planar_share: f64,
+    /// Least median angle left between matched rays after the rotation that explains them best, radians, >= 0. Default
+    /// 0.2 degrees: 99 % of the pairs of a hand-held sequence that are 0.15 m apart have more, and errors of lens and
+    /// shutter, which a turning camera shows as parallax, make less.
+    pub min_residual_parallax: f64,
+    /// Greatest standard deviation of the direction of travel, radians, > 0. Default 10 degrees, under which 98 % of
+    /// the same pairs are.
+    pub max_direction_sigma: f64,
+    /// A rotation that explains this share of the inliers, within twice the threshold, is the whole motion,
+    /// 0..=1. Default 0.8.
+    pub rotation_share: f64,
+}
+
+impl Default for TwoViewConfig {
+    fn default() -> Self {
+        Self {
+            threshold: 1.0,
+            confidence: 0.999,
+            max_samples: 500,
+            min_inliers: 20,
+            min_confident_inliers: 50,
+            min_in_front: 0.7,
+            min_inlier_share: 0.4,
+            min_parallax: 1.5_f64.to_radians(),
+            min_residual_parallax: 0.2_f64.to_radians(),
+            max_direction_sigma: 10_f64.to_radians(),
+            planar_share: 0.45,
+            rotation_share: 0.8,
+        }
+    }
+}
+
+/// Why no relative pose was estimated.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TwoViewError {
+    /// The two slices differ in length.
+    #[error("{first} pixels of the first view cannot be matched with {second} of the second")]
+    LengthMismatch {
+        /// Pixels of the first view.
+        first: usize,
+        /// Pixels of the second view.
+        second: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("match {index} has a coordinate that is not finite")]
+    NonFinite {
+        /// Which match.
+        index: usize,
+    },
+    /// Not enough matches agree.
+    #[error(
+        "{inliers} matches agree with one motion, {needed} are needed; take frames that overlap more"
+    )]
+    TooFewInliers {
+        /// Matches that agree.
+        inliers: usize,
+        /// Matches needed.
+        needed: usize,
+    },
+    /// A parameter is outside its range.
+    #[error("{name} is {value}, but must be {range}")]
+    Parameter {
+        /// Field of the configuration.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+}
+
+/// Errs at the first thing that makes an estimate impossible.
+pub(super) fn check(
+    first: &[Point2<f64>],
+    second: &[Point2<f64>],
+    config: &TwoViewConfig,
+) -> Result<(), TwoViewError> {
+    if first.len() != second.len() {
+        return Err(TwoViewError::LengthMismatch {
+            first: first.len(),
+            second: second.len(),
+        });
+    }
+    let usable = |p: &Point2<f64>| p.x.abs() < 1e9 && p.y.abs() < 1e9;
+    if let Some(index) = first
+        .iter()
+        .zip(second)
+        .position(|(a, b)| !(usable(a) && usable(b)))
+    {
+        return Err(TwoViewError::NonFinite { index });
+    }
+    let parameter = |name, value: f64, good: bool, range| {
+        if good {
+            Ok(())
+        } else {
+            Err(TwoViewError::Parameter { name, value, range })
+        }
+    };
+    let TwoViewConfig {
+        threshold,
+        confidence,
+        ..
+    } = *config;
+    #[expect(clippy::cast_precision_loss, reason = "only shown in a message")]
+    let (samples, inliers) = (config.max_samples as f64, config.min_inliers as f64);
+    parameter(
+        "threshold",
+        threshold,
+        threshold > 0.0 && threshold < 1e6,
+        "positive",
+    )?;
+    let probable = confidence > 0.0 && confidence < 1.0;
+    parameter("confidence", confidence, probable, "between 0 and 1")?;
+    parameter("max_samples", samples, config.max_samples > 0, "at least 1")?;
+    parameter(
+        "min_inliers",
+        inliers,
+        config.min_inliers >= 6,
+        "at least 6",
+    )
+}
