@@ -72,31 +72,6 @@ impl RangeTree {
         }
     }
 
-    /// Visits every point within squared distance `limit` of `center` (range 1) until told to stop.
-    pub(crate) fn within(&self, center: [f64; 3], limit: f64, visit: &mut impl FnMut(u32, f64)) {
-        let mut stack = Vec::new();
-        if !self.nodes.is_empty() {
-            stack.push(0usize);
-        }
-        while let Some(at) = stack.pop() {
-            let node = &self.nodes[at];
-            if box_distance(node, center) / node.largest_range > limit {
-                continue;
-            }
-            if node.right != 0 {
-                stack.push(node.right as usize);
-                stack.push(at + 1);
-                continue;
-            }
-            for i in node.start as usize..node.end as usize {
-                let d = squared_distance(center, self.points[i]) / self.ranges[i];
-                if d <= limit {
-                    visit(self.index[i], d);
-                }
-            }
-        }
-    }
-
     /// Every box, parents before children and the left child next: its corners, its span in leaf
     /// order and the position of its right child, 0 for a leaf.
     pub(crate) fn boxes(
@@ -177,11 +152,21 @@ impl RangeTree {
         found: &mut Vec<Neighbour>,
     ) -> f64 {
         let center = self.points[search.position];
-        for i in node.start as usize..node.end as usize {
-            let scale = search.inverse_range / self.ranges[i];
-            let d = squared_distance(center, self.points[i]) * scale;
-            if d <= limit && i != search.position {
-                limit = insert(found, (d, self.index[i]), search.capacity, limit);
+        let span = node.start as usize..node.end as usize;
+        let members = self.points[span.clone()]
+            .iter()
+            .zip(&self.ranges[span.clone()]);
+        // Whether a point is near enough is a coin toss: collecting those first needs no branch.
+        let mut near = [(0.0, 0); LEAF];
+        let mut count = 0;
+        for (i, (&point, &range)) in span.zip(members) {
+            let d = squared_distance(center, point) * (search.inverse_range / range);
+            near[count.min(LEAF - 1)] = (d, self.index[i]);
+            count += usize::from((d <= limit) & (i != search.position));
+        }
+        for &new in &near[..count] {
+            if new.0 <= limit {
+                limit = insert(found, new, search.capacity, limit);
             }
         }
         limit
@@ -204,18 +189,25 @@ fn insert(found: &mut Vec<Neighbour>, new: Neighbour, capacity: usize, limit: f6
             _ => return limit,
         }
     }
-    let mut at = found.len();
     found.push(new);
-    while at > 0 && precedes(new, found[at - 1]) {
-        found[at] = found[at - 1];
-        at -= 1;
-    }
-    found[at] = new;
+    place_last(found, new);
     if found.len() == capacity {
         found[capacity - 1].0
     } else {
         limit
     }
+}
+
+/// Moves the last entry, `new`, to its place among the others, which are in order.
+fn place_last(found: &mut [Neighbour], new: Neighbour) {
+    for at in (1..found.len()).rev() {
+        if !precedes(new, found[at - 1]) {
+            found[at] = new;
+            return;
+        }
+        found[at] = found[at - 1];
+    }
+    found[0] = new;
 }
 
 fn precedes(a: Neighbour, b: Neighbour) -> bool {

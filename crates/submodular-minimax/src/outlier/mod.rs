@@ -27,6 +27,7 @@ use crate::neighbours::RangeTree;
 use crate::points::{Cloud, PointLike};
 use crate::views::Views;
 use sight::Sight;
+use std::cell::LazyCell;
 
 /// Splits the points into inliers and outliers.
 ///
@@ -67,7 +68,7 @@ pub fn remove_outliers<P: PointLike>(
     if config.reading == Reading::Literal {
         return Ok(OutlierRemoval::keep_all(n, StopReason::Converged));
     }
-    let tree = RangeTree::new(&cloud.points, &[]);
+    let tree = LazyCell::new(|| RangeTree::new(&cloud.points, &[]));
     let assumed = (views.is_none() && config.reading == Reading::Ranged)
         .then(|| origin::view(&cloud, &tree))
         .flatten();
