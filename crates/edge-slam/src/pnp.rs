@@ -301,6 +301,56 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn the_gradient_is_the_derivative_of_hubers_loss(
+            axis in prop::array::uniform3(-0.5..0.5f64), shift in prop::array::uniform3(-0.05..0.05f64), huber in 0.5..9.0f64,
+        ) {
+            let truth = Isometry3::new(Vector3::new(0.3, -0.2, 0.5), axis.into());
+            let observations = scene(&truth, 10);
+            let camera = camera();
+            let problem = Problem { observations: &observations, camera: &camera, huber };
+            let all: Vec<usize> = (0..observations.len()).collect();
+            let [a, b, c] = shift;
+            let pose = moved(&truth, &Vector6::new(a, b, c, 0.2 * c, 0.2 * a, 0.2 * b));
+            let (_, gradient, square) = problem.normal_equations(&pose, &all);
+            prop_assert!(square > 0.0);
+            for k in 0..6 {
+                let mut step = Vector6::zeros();
+                step[k] = 1e-6;
+                let at = |step: Vector6<f64>| problem.cost(&moved(&pose, &step), &all);
+                let numeric = (at(step) - at(-step)) / 2e-6;
+                prop_assert!((numeric - gradient[k]).abs() < 1e-5 * (1.0 + gradient.norm()), "{} {}", numeric, gradient[k]);
+            }
+        }
+
+        #[test]
+        fn the_covariance_is_that_of_the_derivative_by_the_pixels(axis in prop::array::uniform3(-0.5..0.5f64)) {
+            // Without noise and outliers every weight is 1, and the pose moves by (JᵀJ)⁻¹ Jᵀ times a change of pixels.
+            let truth = Isometry3::new(Vector3::new(0.3, -0.2, 0.5), axis.into());
+            let camera = camera();
+            let exact: Vec<Observation> = scene(&truth, 0).into_iter().step_by(4).map(|o| {
+                Observation { pixel: camera.project(&(truth * o.point)).unwrap(), ..o }
+            }).collect();
+            let run = |observations: &[Observation]| {
+                refine_pose(observations, &camera, &truth, &PnpConfig::default()).unwrap()
+            };
+            let covariance = run(&exact).covariance;
+            let mut numeric = Matrix6::zeros();
+            for k in 0..2 * exact.len() {
+                let tangent = |by: f64| {
+                    let mut moved = exact.clone();
+                    moved[k / 2].pixel[k % 2] += by;
+                    let change = run(&moved).camera_from_world * truth.inverse();
+                    let (v, w) = (change.translation.vector, change.rotation.scaled_axis());
+                    Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z)
+                };
+                let slope = (tangent(1e-2) - tangent(-1e-2)) / 2e-2;
+                numeric += slope * slope.transpose();
+            }
+            prop_assert!((numeric - covariance).norm() < 1e-2 * covariance.norm(), "{} {}", numeric, covariance);
+        }
+
         #[test]
         fn the_jacobian_is_the_derivative(
             point in prop::array::uniform3(-1.0..1.0f64), axis in prop::array::uniform3(-0.3..0.3f64),

@@ -141,6 +141,30 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn the_gradient_is_the_derivative_of_the_loss(
+            axis in prop::array::uniform3(-0.3..0.3f64), shift in prop::array::uniform3(-1.0..1.0f64),
+            x in prop::collection::vec(prop::array::uniform4(-0.5..0.5f64), 8..20),
+        ) {
+            prop_assume!(Vector3::from(shift).norm() > 0.1);
+            let pose = Isometry3::new(Vector3::from(shift).normalize(), axis.into());
+            let ray = |x: f64, y: f64| Vector3::new(x, y, 1.0);
+            let first: Vec<_> = x.iter().map(|x| ray(x[0], x[1])).collect();
+            let second: Vec<_> = x.iter().map(|x| ray(x[2], x[3])).collect();
+            let sigma = 0.1;
+            let (_, gradient, tangents) = normal_equations(&pose, &first, &second, sigma);
+            for k in 0..5 {
+                let mut step = Vector5::zeros();
+                step[k] = 1e-6;
+                let at = |step: Vector5<f64>| cost(&moved(&pose, &step, &tangents), &first, &second, sigma);
+                // The normal equations leave out the factor 2 of the square.
+                let numeric = (at(step) - at(-step)) / 4e-6;
+                prop_assert!((numeric - gradient[k]).abs() < 1e-4 * (1.0 + gradient.norm()), "{} {}", numeric, gradient[k]);
+            }
+        }
+    }
+
     #[test]
     fn a_disturbed_pose_returns() {
         let truth = Isometry3::new(Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.1, -0.2, 0.05));

@@ -107,6 +107,71 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn slopes_are_the_derivatives(
+            p in prop::array::uniform3(-1.0..1.0f64), ray in prop::array::uniform2(-0.6..0.6f64),
+        ) {
+            let (point, ray) = (Point3::new(p[0], p[1], 3.0 + p[2]), Vector3::new(2.0 * ray[0], 2.0 * ray[1], 2.0));
+            let (_, slope) = residual(&point, &ray).unwrap();
+            for k in 0..3 {
+                let mut step = Vector3::zeros();
+                step[k] = 1e-6;
+                let ahead = residual(&(point + step), &ray).unwrap().0;
+                let behind = residual(&(point - step), &ray).unwrap().0;
+                prop_assert!(((ahead - behind) / 2e-6 - slope.column(k)).norm() < 1e-8);
+            }
+        }
+
+        #[test]
+        fn the_gradient_of_both_views_is_the_derivative(
+            p in prop::array::uniform3(-1.0..1.0f64), x in prop::array::uniform4(-0.4..0.4f64),
+            shift in prop::array::uniform3(-0.5..0.5f64), turn in prop::array::uniform3(-0.3..0.3f64),
+        ) {
+            // The second view's slope is chained with the rotation, so half of this would be wrong without it.
+            let point = Point3::new(p[0], p[1], 4.0 + p[2]);
+            let [first, second] = [[x[0], x[1]], [x[2], x[3]]].map(|[x, y]| Vector3::new(x, y, 1.0));
+            let motion = Isometry3::new(shift.into(), turn.into());
+            let at = |point: &Point3<f64>| normal_equations(point, &first, &second, &motion).unwrap();
+            let (normal, gradient, _) = at(&point);
+            let eyes = |point: &Point3<f64>| {
+                let (a, b) = (residual(point, &first).unwrap().0, residual(&(motion * point), &second).unwrap().0);
+                nalgebra::Vector4::new(a.x, a.y, b.x, b.y)
+            };
+            let mut slopes = nalgebra::Matrix4x3::zeros();
+            for k in 0..3 {
+                let mut step = Vector3::zeros();
+                step[k] = 1e-6;
+                let (ahead, behind) = (point + step, point - step);
+                // Half the derivative of the sum of squares.
+                prop_assert!(((at(&ahead).2 - at(&behind).2) / 4e-6 - gradient[k]).abs() < 1e-8);
+                slopes.set_column(k, &((eyes(&ahead) - eyes(&behind)) / 2e-6));
+            }
+            prop_assert!((slopes.tr_mul(&slopes) - normal).norm() < 1e-8);
+        }
+
+        #[test]
+        fn the_covariance_is_that_of_the_derivative_by_the_rays(
+            p in prop::array::uniform3(-1.0..1.0f64), turn in prop::array::uniform3(-0.2..0.2f64),
+        ) {
+            let (point, motion) = (Point3::new(p[0], p[1], 4.0 + p[2]), Isometry3::new(Vector3::new(0.8, 0.1, 0.2), turn.into()));
+            let seen = motion * point;
+            let rays = [point.coords / point.z, seen.coords / seen.z];
+            let found = triangulate(&rays[0], &rays[1], &motion).unwrap();
+            let mut numeric = Matrix3::zeros();
+            for k in 0..4 {
+                let moved = |by: f64| {
+                    let mut rays = rays;
+                    rays[k / 2][k % 2] += by;
+                    triangulate(&rays[0], &rays[1], &motion).unwrap().point
+                };
+                let slope = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                numeric += slope * slope.transpose();
+            }
+            prop_assert!((numeric - found.covariance).norm() < 1e-4 * found.covariance.norm());
+        }
+    }
+
     #[test]
     fn the_covariance_predicts_the_scatter() {
         use rand::{RngExt, SeedableRng};
