@@ -173,6 +173,33 @@ fn clean_keeps_and_writes_what_it_says() {
 }
 
 #[test]
+fn clean_says_so_when_nothing_is_left_and_withstands_absurd_points() {
+    let folder = folder("absurd");
+    let one = file(&folder, "one.csv", "1,2,3\n");
+    let kept = folder.join("kept.ply");
+    let output = kept.display().to_string();
+    for method in ["ror", "dbscan"] {
+        let line = complaint(&["clean", &one, "--method", method, "-o", &output]);
+        assert!(line.contains("nothing is left to write"), "{line}");
+        assert!(!kept.exists());
+        let report = json(&["clean", &one, "--method", method, "--json"]);
+        assert_eq!(report["kept"].as_u64(), Some(0), "{method}");
+    }
+    let far = file(&folder, "far.csv", &format!("{}1e300,-1e300,0\n", room()));
+    let last = room().lines().count() as u64 - 1;
+    for method in METHODS.into_iter().filter(|method| *method != "paper") {
+        let report = json(&["clean", &far, "--method", method, "--json"]);
+        let removed = report["removed_indices"].as_array().expect("a list");
+        assert_eq!(
+            removed.last().and_then(Value::as_u64),
+            Some(last),
+            "{method}"
+        );
+        assert!(report["kept"].as_u64() > Some(last / 2), "{method}");
+    }
+}
+
+#[test]
 fn exits_finds_the_door() {
     let folder = folder("exits");
     let input = file(&folder, "room.csv", &room());

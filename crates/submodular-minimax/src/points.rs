@@ -11,13 +11,17 @@ impl<P: Copy + Into<[f64; 3]>> PointLike for P {}
 /// Finite points scaled by a power of two so that no squared distance overflows.
 ///
 /// A power of two changes exponents only, so every decision made on the scaled points is the one
-/// that exact arithmetic on the caller's points would lead to.
+/// that exact arithmetic on the caller's points would lead to. Coordinates beyond 10¹⁰⁰ times the median
+/// size are drawn in to that, lest the others' squared distances vanish beside theirs.
 pub(crate) struct Cloud {
-    /// The scaled points; coordinates lie in [-1, 1].
+    /// The scaled points; coordinates lie in [-1, 1], or [-2, 2] at the end of what numbers can tell.
     pub(crate) points: Vec<[f64; 3]>,
     /// Caller's units per scaled unit, a power of two.
     pub(crate) unit: f64,
 }
+
+/// The largest coordinate that is told from larger ones, in median sizes of the points.
+const MOST_MEDIANS: f64 = 1e100;
 
 /// The index of a point with a NaN or infinite coordinate.
 pub(crate) struct NonFiniteAt(pub(crate) usize);
@@ -26,18 +30,18 @@ impl Cloud {
     /// Checks and scales the points.
     pub(crate) fn new<P: PointLike>(points: &[P]) -> Result<Self, NonFiniteAt> {
         let mut points: Vec<[f64; 3]> = points.iter().map(|&point| point.into()).collect();
-        let mut largest = 0.0_f64;
+        let mut sizes = Vec::with_capacity(points.len());
         for (index, point) in points.iter().enumerate() {
-            for coordinate in point {
-                if !coordinate.is_finite() {
-                    return Err(NonFiniteAt(index));
-                }
-                largest = largest.max(coordinate.abs());
+            if !point.iter().all(|coordinate| coordinate.is_finite()) {
+                return Err(NonFiniteAt(index));
             }
+            sizes.push(point.iter().fold(0.0_f64, |size, x| size.max(x.abs())));
         }
-        let unit = power_of_two_above(largest);
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        sizes.retain(|&size| size > 0.0);
+        let unit = power_of_two_above(largest.min(MOST_MEDIANS * median(&mut sizes)));
         for point in &mut points {
-            *point = scaled(*point, unit);
+            *point = scaled(*point, unit).map(|x| x.clamp(-2.0, 2.0));
         }
         Ok(Self { points, unit })
     }
@@ -97,6 +101,15 @@ mod tests {
             assert!(d.is_finite() && d > 0.0, "size {size}: {d}");
             assert!((d.sqrt() / (size / cloud.unit) - 5.0_f64.sqrt()).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn one_absurd_point_does_not_merge_the_others() {
+        let cloud = Cloud::new(&[[1.0; 3], [1.001; 3], [1.002; 3], [1e300, -1e300, 0.0]]);
+        let points = cloud.ok().unwrap().points;
+        let near = squared_distance(points[0], points[1]);
+        assert!(near > 0.0 && near < squared_distance(points[0], points[2]));
+        assert!(squared_distance(points[0], points[3]) / near > 1e100);
     }
 
     #[test]

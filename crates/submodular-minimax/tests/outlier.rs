@@ -206,6 +206,51 @@ fn bad_settings_and_input_are_errors_with_numbers() {
 }
 
 #[test]
+fn one_absurd_point_does_not_save_the_others_from_judgement() {
+    let cloud = Room {
+        points: 1_500,
+        outliers: 0.1,
+        patches: 60,
+        seed: 9,
+    }
+    .make();
+    for far in [1e30, 1e300] {
+        let points: Vec<[f64; 3]> = (cloud.points.iter().copied())
+            .chain([[far, -far, far]])
+            .collect();
+        for config in presets() {
+            let alone = remove_outliers(&cloud.points, None, &config).unwrap();
+            let found = remove_outliers(&points, None, &config).unwrap();
+            assert!(found.removed.contains(&1_500), "{:?}", config.reading);
+            let differ = (0..1_500)
+                .filter(|v| found.removed.contains(v) != alone.removed.contains(v))
+                .count();
+            assert!(differ <= 3, "{:?}: {differ} points", config.reading);
+        }
+    }
+}
+
+/// Quadratic work would take minutes here.
+#[test]
+fn stacks_of_equal_points_are_no_trouble() {
+    let mut points = vec![[2.0, -1.0, 0.5]; 100_000];
+    for config in presets() {
+        let found = remove_outliers(&points, None, &config).unwrap();
+        assert!(found.removed.is_empty(), "{:?}", config.reading);
+    }
+    let cloud = Room {
+        points: 60_000,
+        outliers: 0.1,
+        patches: 1_300,
+        seed: 9,
+    };
+    points.truncate(50_000);
+    points.extend(cloud.make().points);
+    let found = remove_outliers(&points, None, &OutlierConfig::default()).unwrap();
+    assert_eq!(found.kept.len() + found.removed.len(), points.len());
+}
+
+#[test]
 fn clouds_without_spacing_are_kept_whole() {
     let line: Vec<[f64; 3]> = (0..4).map(|i| [f64::from(i), 0.0, 0.0]).collect();
     for points in [vec![], vec![[1.0; 3]], line, vec![[2.0; 3]; 50]] {

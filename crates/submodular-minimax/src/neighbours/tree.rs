@@ -20,6 +20,8 @@ struct Node {
     low: [f64; 3],
     high: [f64; 3],
     largest_range: f64,
+    /// The least index of the points inside.
+    first: u32,
     start: u32,
     end: u32,
     /// The right child; the left one follows its parent. 0 marks a leaf.
@@ -125,6 +127,11 @@ impl RangeTree {
             return limit;
         }
         let node = &self.nodes[at];
+        // At equal distance lower indices come first, so a stack of equal points need not be searched whole.
+        let tied = |last: &Neighbour| nearest_possible == last.0 && node.first > last.1;
+        if found.len() == search.capacity && found.last().is_some_and(tied) {
+            return limit;
+        }
         if node.right == 0 {
             return self.scan(node, search, limit, found);
         }
@@ -255,11 +262,13 @@ fn bounds(points: &[[f64; 3]], ranges: &[f64], index: &[u32], start: usize) -> N
         }
         largest_range = largest_range.max(range_of(ranges, i));
     }
+    let first = index.iter().copied().min().unwrap_or_default();
     let (start, end) = (start as u32, (start + index.len()) as u32);
     Node {
         low,
         high,
         largest_range,
+        first,
         start,
         end,
         right: 0,

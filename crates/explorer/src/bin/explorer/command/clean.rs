@@ -52,6 +52,15 @@ pub(crate) fn run(arguments: &Clean, output: &Output) -> Result<(), Failure> {
     )?;
     drop(progress);
     if let Some(path) = &arguments.output {
+        if report.kept == 0 {
+            return Err(Failure::new(
+                format!(
+                    "all {} points are outliers to this method, so nothing is left to write",
+                    report.points
+                ),
+                "try another --method, or leave --output out to see the result",
+            ));
+        }
         let kept = loaded.map.with_points_at(&report.kept_indices);
         write_file(path, |file| write_ply(&kept, file))?;
     }
@@ -120,7 +129,8 @@ fn minimax(
         .map_err(|error| Failure::new(error, "correct the map"))?;
     let certificate = CertificateReport {
         lower_bound: removal.certificate.lower_bound,
-        upper_bound: removal.certificate.upper_bound,
+        // An empty sum is -0.
+        upper_bound: removal.certificate.upper_bound + 0.0,
     };
     Ok(CleanReport {
         points: loaded.points.len(),
