@@ -40,10 +40,11 @@ impl NeighbourGraph {
         &self.entries[start..start + self.count[v] as usize]
     }
 
-    /// Drops the neighbours beyond squared distance `limit`.
+    /// Shows the neighbours within squared distance `limit` only, all that were found if it is large.
     pub(crate) fn truncate(&mut self, limit: f64) {
-        for v in 0..self.count.len() {
-            self.count[v] = self.row(v).partition_point(|n| n.0 <= limit) as u32;
+        let limit = limit.min(f64::MAX);
+        for (row, count) in self.entries.chunks(self.width.max(1)).zip(&mut self.count) {
+            *count = row.partition_point(|n| n.0 <= limit) as u32;
         }
     }
 

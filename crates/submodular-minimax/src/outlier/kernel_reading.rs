@@ -13,6 +13,10 @@ use crate::points::{Cloud, median};
 
 /// The threshold of the strict pass.
 const STRICT: f64 = 0.5;
+/// How much shorter or longer than configured links may become. In clean clouds the suspects are true
+/// points of thin texture, which lie closer together than outliers do.
+const SHORTEST: f64 = 6.0 / 7.0;
+const LONGEST: f64 = 2.0;
 /// Violating rays that count at most.
 const MOST_VIOLATIONS: u32 = 5;
 
@@ -35,7 +39,7 @@ pub(super) fn problem(
     };
     graph.truncate(settings.reach * settings.reach);
     if config.adaptive {
-        settings = settings.adapted(&graph, config.reading);
+        settings = settings.adapted(&graph, config.reading, cloud);
         graph.truncate(settings.reach * settings.reach);
     }
     let score = settings.score(&graph, config.reading);
@@ -64,13 +68,14 @@ struct Settings {
 }
 
 impl Settings {
-    /// Settings for the dirt there is: a strict pass (threshold 0.5) tells how much it would remove.
+    /// Settings for the dirt there is: a strict pass (threshold 0.5) tells which points are suspect.
     ///
-    /// Up to 12 % every point counts as an inlier sooner; from 26 % on links are shorter and
-    /// representatives need more support. From 10,000 to 50,000 points the threshold falls by a quarter, since
-    /// larger clouds are denser at their core and not at their fringe. Below 5,000 points true patches
-    /// are as small as clumps of outliers, and smaller components may represent.
-    fn adapted(self, graph: &NeighbourGraph, reading: Reading) -> Self {
+    /// Links are as long as the suspects' distances allow, see [`reach_among`]. Up to 12 % every point
+    /// counts as an inlier sooner; up to 26 % representatives need more and more support. From 10,000 to
+    /// 50,000 points the threshold falls by a quarter, since larger clouds are denser at their core and
+    /// not at their fringe. Below 5,000 points true patches are as small as clumps of outliers, and
+    /// smaller components may represent.
+    fn adapted(self, graph: &NeighbourGraph, reading: Reading, cloud: &Cloud) -> Self {
         let n = graph.len();
         let score = self.score(graph, reading);
         let threshold = vec![STRICT; n];
@@ -80,12 +85,16 @@ impl Settings {
             threshold,
             beta: 1.0,
         };
-        let removed = (0..n).filter(|&v| strict.best(v) <= STRICT).count();
-        let dirt = ((removed as f64 / n as f64 - 0.12) / 0.14).clamp(0.0, 1.0);
+        let suspects: Vec<[f64; 3]> = (0..n)
+            .filter(|&v| strict.best(v) <= STRICT)
+            .map(|v| cloud.points[v])
+            .collect();
+        let dirt = ((suspects.len() as f64 / n as f64 - 0.12) / 0.14).clamp(0.0, 1.0);
         let small = (n as f64 / 5e3).clamp(0.4, 1.0);
         let size = ((n as f64 / 1e4).ln() / 5.0_f64.ln()).clamp(0.0, 1.0);
+        let reach = reach_among(&suspects).unwrap_or(self.reach);
         Self {
-            reach: self.reach * (1.0 - dirt / 7.0),
+            reach: reach.clamp(SHORTEST * self.reach, LONGEST * self.reach),
             threshold: self.threshold * (2.0 + dirt) / 3.0 * (1.0 - size / 4.0),
             support: self.support * (1.0 + dirt),
             min_component: self.min_component * (1.0 + dirt / 5.0) * small,
@@ -108,6 +117,21 @@ impl Settings {
         }
         Score::Kernel { reach, weight }
     }
+}
+
+/// How long links may be so that half a suspect is to be expected within reach of a suspect.
+///
+/// Outliers fill the space, so that their number within h grows with h³, and they must not vouch for each
+/// other: (h / d)³ = 0.5 / 8, where d is the median distance to the eighth nearest suspect; a clump
+/// hardly holds as many. `None` for fewer suspects.
+fn reach_among(suspects: &[[f64; 3]]) -> Option<f64> {
+    const NEIGHBOUR: usize = 8;
+    const EXPECTED: f64 = 0.5;
+    let graph = NeighbourGraph::new(&RangeTree::new(suspects, &[]), NEIGHBOUR, f64::INFINITY);
+    let last = |v: usize| graph.row(v).get(NEIGHBOUR - 1).map(|n| n.0.sqrt());
+    let mut distances: Vec<f64> = (0..graph.len()).filter_map(last).collect();
+    let apart = (!distances.is_empty()).then(|| median(&mut distances))?;
+    Some(apart * (EXPECTED / NEIGHBOUR as f64).cbrt())
 }
 
 /// The median distance to the fourth neighbour; `None` if there is no such, or if it is zero.
