@@ -300,6 +300,16 @@ mod tests {
     }
 
     #[test]
+    fn coordinates_at_the_end_of_what_numbers_can_tell_do_not_mislead() {
+        let points: Vec<[f64; 3]> = (0..200)
+            .map(|i| [0.37, 0.59, 0.83].map(|step| (f64::from(i) * step).sin() * f64::MAX))
+            .collect();
+        same_as_naive(&points, Kernel::Linear { reach: f64::MAX }, 9);
+        same_as_naive(&points, Kernel::Reciprocal { scale: 1e307 }, 9);
+        same_as_naive(&points, Kernel::Rational { scale: 1e308 }, 9);
+    }
+
+    #[test]
     fn weights_that_overflow_are_an_error_and_tiny_ones_count() {
         let points: Vec<[f64; 3]> = (0..30).map(|i| [f64::from(i), 0.0, 0.0]).collect();
         let weighted = |weights: Vec<f64>| {

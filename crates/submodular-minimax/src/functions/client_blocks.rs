@@ -175,7 +175,7 @@ impl Region {
 
 /// Blocks in a group.
 const GROUP: usize = 8;
-/// More than rounding takes from squared distances of points in [-1, 1].
+/// More than rounding takes from squared distances of points in [-2, 2].
 const MARGIN: f64 = 1e-12;
 /// Weights below this share of the largest count as this much in bounds, so that none vanishes.
 const LIGHTEST: f32 = 1e-30;

@@ -44,7 +44,7 @@ pub(super) struct FacilityBox {
 }
 
 impl FacilityBox {
-    /// The corners lie in [-1, 1].
+    /// The corners lie in [-2, 2].
     pub(super) fn new(low: [f64; 3], high: [f64; 3]) -> Self {
         let center = [0, 1, 2].map(|axis| on_grid(0.5 * (low[axis] + high[axis])));
         let half = [0, 1, 2].map(|axis| {
@@ -56,7 +56,8 @@ impl FacilityBox {
     }
 }
 
-/// The nearest multiple of 2⁻²³, exact in f32 for values in [-1, 1], as are differences of two.
+/// The nearest multiple of 2⁻²³, exact in f32 for values in [-2, 2]; so is the difference of two within 2
+/// of each other, and any other errs by one such cell at most.
 pub(super) fn on_grid(value: f64) -> f32 {
     const CELLS: f64 = 8_388_608.0;
     ((value * CELLS).round() / CELLS) as f32
@@ -124,8 +125,8 @@ impl Kernel32 {
     }
 
     /// What rounding may take from one client's bound: s ≤ 1 and |d s'(d)| ≤ 1 near its threshold, so
-    /// relative errors of some ulp cost as many ulp; places are off by half a cell of the grid, times
-    /// the slope of the kernel, at most `inverse`; E errs by some ulp of the half sides.
+    /// relative errors of some ulp cost as many ulp; places are off by half a cell of the grid and
+    /// differences by one, times the slope of the kernel, at most `inverse`; E errs by some ulp of the half sides.
     pub(super) fn slack(&self, half: [f32; 3]) -> f32 {
         let side = half[0] + half[1] + half[2];
         f32::EPSILON * (16.0 + self.inverse * (4.0 + 16.0 * side))
