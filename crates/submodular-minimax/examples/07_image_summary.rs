@@ -1,8 +1,8 @@
 //! A summary of images that satisfies whichever few of them a user cares for: algorithms compared.
 //!
 //! 80 images in 5 themes, each a vector of 12 generated features; s is their cosine, moved to [0, 1]
-//! and sharpened. X is the summary at 0.25 an image; every image left out costs what the most similar
-//! of the user's 8 favourites, chosen against the summary, is similar to it.
+//! and sharpened. X is the summary, and an image in it costs its size, 0.1 to 0.7; every image left out costs
+//! what the most similar of the user's 8 favourites, chosen against the summary, is similar to it.
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
 
 #[path = "../tests/tables/mod.rs"]
@@ -33,7 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let cosine = dot(a, b) / (dot(a, a) * dot(b, b)).sqrt();
         (0.5 + 0.5 * cosine).clamp(0.0, 1.0).powi(12)
     })?;
-    let function = Representation::new(similarity, vec![0.25; images.len()], 1.0 / 80.0)?;
+    let sizes = images.iter().map(|_| 0.1 + 0.6 * rng.random::<f64>());
+    let function = Representation::new(similarity, sizes.collect(), 1.0 / 80.0)?;
     println!("image summary: 80 images, 8 favourites");
     tables::compare(&function, 8)
 }

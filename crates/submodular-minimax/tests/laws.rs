@@ -57,10 +57,11 @@ proptest! {
     #[test]
     fn points_serve_like_their_matrix(
         points in prop::collection::vec(prop::array::uniform3(-3.0..3.0_f64), 2..7),
-        linear in any::<bool>(),
+        kernel in prop_oneof![
+            Just(Kernel::Linear { reach: 2.5 }), Just(Kernel::Rational { scale: 0.7 }),
+            Just(Kernel::Reciprocal { scale: 0.7 }),
+        ],
     ) {
-        let kernel =
-            if linear { Kernel::Linear { reach: 2.5 } } else { Kernel::Rational { scale: 0.7 } };
         let function = FacilityLocation::new(Points::new(&points, kernel).unwrap());
         assert_submodular!(&function);
         let n = points.len();
@@ -121,6 +122,21 @@ proptest! {
                 );
                 prop_assert!((a - b).abs() < 1e-9);
             }
+        }
+    }
+
+    #[test]
+    fn eq_1_keeps_the_law_on_two_ground_sets_dense_and_sparse(
+        dense in matrix(3, 5),
+        lambda in prop::collection::vec(0.0..1.0_f64, 5),
+    ) {
+        let sparse = Representation::new(sparse_of(&dense), lambda.clone(), 0.0).unwrap();
+        let dense = Representation::new(dense, lambda, 0.0).unwrap();
+        assert_jointly_submodular!(&dense);
+        assert_jointly_submodular!(&sparse);
+        for (mask, other) in (0..32).flat_map(|x| (0..8).map(move |y| (x, y))) {
+            let (x, y) = (Subset::from_mask(5, mask), Subset::from_mask(3, other));
+            prop_assert!((dense.value(&x, &y) - sparse.value(&x, &y)).abs() < 1e-12);
         }
     }
 

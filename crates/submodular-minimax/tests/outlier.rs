@@ -63,6 +63,9 @@ proptest! {
                 prop_assert!(found.certificate.lower_bound <= found.certificate.upper_bound + 1e-9);
             }
             prop_assert!(b.iterations >= a.iterations);
+            // Both bound the same optimum, so neither may contradict the other.
+            prop_assert!(a.certificate.lower_bound <= b.certificate.upper_bound + 1e-9);
+            prop_assert!(b.certificate.lower_bound <= a.certificate.upper_bound + 1e-9);
         }
     }
 
@@ -78,14 +81,16 @@ proptest! {
         let observers = order.iter().map(|&v| views.observers(v).collect()).collect();
         let cameras = views.viewpoints().iter().map(scaled).collect();
         let moved_views = Views::new(cameras, observers).unwrap();
-        for config in presets() {
-            let a = remove_outliers(&points, Some(&views), &config).unwrap();
-            let b = remove_outliers(&moved, Some(&moved_views), &config).unwrap();
-            for (at, &v) in order.iter().enumerate() {
-                // A point within rounding of its bar may fall on either side.
-                let close = a.scores[v].abs() < 1e-9;
-                let same = (a.scores[v] >= 0.0) == (b.scores[at] >= 0.0);
-                prop_assert!(same || close, "{:?} point {v}", config.reading);
+        for config in presets().into_iter().chain([OutlierConfig::paper()]) {
+            for (views, moved_views) in [(None, None), (Some(&views), Some(&moved_views))] {
+                let a = remove_outliers(&points, views, &config).unwrap();
+                let b = remove_outliers(&moved, moved_views, &config).unwrap();
+                for (at, &v) in order.iter().enumerate() {
+                    // A point within rounding of its bar may fall on either side.
+                    let close = a.scores[v].abs() < 1e-9;
+                    let same = (a.scores[v] >= 0.0) == (b.scores[at] >= 0.0);
+                    prop_assert!(same || close, "{:?} point {v}", config.reading);
+                }
             }
         }
     }
@@ -362,6 +367,35 @@ fn the_synthetic_apartment_keeps_its_measured_figure() {
     let found = remove_outliers(&cloud.points, None, &OutlierConfig::default()).unwrap();
     let f1 = f1(&found.removed, &cloud.outlier);
     assert!(f1 >= 0.93, "F1 {f1:.3}");
+}
+
+/// Every preset, with and without observations, in closed form and by iterations.
+#[cfg(feature = "rayon")]
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    let (points, views) = observed_room(2_500, 6);
+    for preset in presets().into_iter().chain([OutlierConfig::paper()]) {
+        for (views, solver) in [
+            (None, Solver::ClosedForm),
+            (Some(&views), Solver::ClosedForm),
+            (Some(&views), Solver::Engine),
+        ] {
+            let config = OutlierConfig {
+                solver,
+                ..preset.clone()
+            };
+            let on = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+                let run = || remove_outliers(&points, views, &config).unwrap();
+                pool.build().unwrap().install(run)
+            };
+            let alone = on(1);
+            for threads in [2, 3, 7] {
+                let reading = config.reading;
+                assert_eq!(alone, on(threads), "{reading:?}, {threads} threads");
+            }
+        }
+    }
 }
 
 /// The bits of the scores, recorded: the same on one thread and on many (feature `rayon`).

@@ -60,14 +60,19 @@ pub fn compare<F: JointFunction>(function: &F, k: usize) -> Result<(), Box<dyn E
         .fold(0.0, f64::max);
     println!(
         "{:30} {:>4} {:>8} {:>8} {:>7} {:>7}",
-        "", "|X|", "value", "upper", "/ lower", "rounds"
+        "", "|X|", "value", "upper", "/lower", "rounds"
     );
     for (name, solution) in &rows {
         print_row(name, solution, lower);
     }
     let nothing = oracle.maximize(function.given_x(&Subset::empty(function.x_size())).as_ref())?;
     println!("{:30} {:4} {:8.3}", "nothing chosen", 0, nothing.value);
-    println!("lower bound on the optimum: {lower:.3}");
+    println!(
+        "lower bound on the optimum: {lower:.3}; \"/lower\": the upper bound in its multiples"
+    );
+    println!(
+        "the max-min row has the value and the bound of max-min, which is never above minimax"
+    );
     Ok(())
 }
 
