@@ -368,5 +368,31 @@ mod tests {
                 prop_assert!(((ahead - behind) / 2e-6 - jacobian.column(k)).norm() < 1e-4);
             }
         }
+
+        #[test]
+        fn the_gradient_is_that_of_hubers_loss(
+            points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 6..12),
+            off in prop::array::uniform2(-30.0..30.0f64), axis in prop::array::uniform3(-0.3..0.3f64),
+        ) {
+            let camera = camera();
+            let pose = Isometry3::new(Vector3::new(0.1, 0.2, 4.0), axis.into());
+            let observation = |(k, &point): (usize, &[f64; 3])| {
+                let seen = camera.project(&(pose * Point3::from(point))).unwrap();
+                // Some residuals below the bend of the loss, some above.
+                let off = nalgebra::Vector2::from(off) * k as f64 / 12.0;
+                Observation { point: point.into(), pixel: seen + off, sigma: 1.3 }
+            };
+            let observations: Vec<_> = points.iter().enumerate().map(observation).collect();
+            let problem = Problem { observations: &observations, camera: &camera, huber: 2.45 };
+            let all: Vec<usize> = (0..observations.len()).collect();
+            let (_, gradient, _) = problem.normal_equations(&pose, &all);
+            for k in 0..6 {
+                let mut step = Vector6::zeros();
+                step[k] = 1e-6;
+                let cost = |step: Vector6<f64>| problem.cost(&moved(&pose, &step), &all);
+                let numeric = (cost(step) - cost(-step)) / 2e-6;
+                prop_assert!((numeric - gradient[k]).abs() < 1e-4 * (1.0 + gradient.norm()), "{k}");
+            }
+        }
     }
 }

@@ -11,9 +11,10 @@ use edge_slam::evaluation::{
     Alignment, ApeConfig, RpeConfig, TimedPose, absolute_pose_error, map_accuracy,
     relative_pose_error,
 };
+use edge_slam::feature::KltConfig;
 use edge_slam::image::GrayImage;
 use edge_slam::nalgebra::{Isometry3, Point2, Point3, Vector3};
-use edge_slam::odometry::{Odometry, OdometryConfig};
+use edge_slam::odometry::{Odometry, OdometryConfig, Tracker};
 use edge_slam::pnp::{Observation, PnpConfig, refine_pose};
 use edge_slam::two_view::{
     TwoViewConfig, essential_from_five, estimate_two_view, refine_relative_pose, triangulate,
@@ -63,7 +64,9 @@ proptest! {
     fn images_and_depths(images in prop::collection::vec(image(), 1..4), value in any::<f32>()) {
         let lens = RadialTangential { k1: 0.2, k2: -0.9, p1: 0.0, p2: 0.01, k3: 1.1 };
         let camera = Camera { pinhole: camera(), distortion: lens };
-        let mut odometry = Odometry::new(camera, OdometryConfig::default()).unwrap();
+        let config = OdometryConfig::default();
+        let traced = OdometryConfig { tracker: Tracker::Klt(KltConfig::default()), ..config };
+        let mut odometries = [config, traced].map(|config| Odometry::new(camera, config).unwrap());
         let rng = &mut Pcg64::seed_from_u64(1);
         for (time, image) in images.iter().enumerate() {
             let depth = depth_of(image, value);
@@ -83,8 +86,10 @@ proptest! {
             let other = depth_of(&images[0], value);
             for depth in [None, Some(&depth), Some(&other)] {
                 let frame = Frame { time: time as f64, image: view, depth };
-                let tracked = odometry.track(&frame, depth, rng);
-                prop_assert!(tracked.world_from_camera.is_none_or(|p| p.translation.vector.iter().all(|v| v.is_finite())));
+                for odometry in &mut odometries {
+                    let pose = odometry.track(&frame, depth, rng).world_from_camera;
+                    prop_assert!(pose.is_none_or(|p| p.translation.vector.iter().all(|v| v.is_finite())));
+                }
             }
         }
     }

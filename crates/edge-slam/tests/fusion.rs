@@ -90,6 +90,71 @@ fn the_error_is_as_great_as_the_covariance_says() {
     assert!((253.9 / 50.0..349.9 / 50.0).contains(&mean), "{mean}");
 }
 
+/// The same with odometry of an unknown unit since the start: position, attitude and scale.
+fn nees_with_scale(seed: u64, scale_sigma: f64) -> f64 {
+    let rng = &mut Pcg64::seed_from_u64(seed);
+    let config = EkfConfig {
+        initial_scale_sigma: scale_sigma,
+        velocity_frame: VelocityFrame::World,
+        ..Default::default()
+    };
+    let mut position = noise(rng, 0.01);
+    let mut attitude = noise(rng, 1_f64.to_radians());
+    let mut log_scale = scale_sigma * normal(rng);
+    let zero = Vector3::zeros();
+    let mut ekf = Ekf::new(config, 0.0, zero, zero).unwrap();
+    let (dt, mut fixed_at) = (0.1, 0.0);
+    for step in 1..=200 {
+        let time = f64::from(step) * dt;
+        let velocity = Vector3::new(0.5 * (0.4 * time).cos(), 0.5 * (0.3 * time).sin(), 0.05);
+        let q = config.process.covariance(0.9, time - fixed_at, dt);
+        position += velocity * dt + noise(rng, q[(0, 0)].sqrt());
+        attitude += noise(rng, q[(3, 3)].sqrt());
+        log_scale += normal(rng) * q[(6, 6)].sqrt();
+        let sample = FlightSample {
+            time,
+            velocity,
+            battery: 0.9,
+        };
+        ekf.predict(&sample).unwrap();
+        if step % 5 == 0 {
+            let sigma = config
+                .visual_sigma
+                .hypot(config.visual_drift * position.norm());
+            let odometry = AnchoredOdometry {
+                anchor_position: zero,
+                anchor_rotation: Rotation3::identity(),
+                displacement: (position + noise(rng, sigma)) / log_scale.exp(),
+                attitude: attitude + noise(rng, config.visual_angle_sigma),
+                inliers: 100,
+            };
+            if ekf.update_odometry(&odometry).unwrap().accepted {
+                fixed_at = time;
+            }
+        }
+    }
+    let state = ekf.state();
+    let (p, a) = (state.position - position, state.attitude - attitude);
+    let error = SVector::from([p.x, p.y, p.z, a.x, a.y, a.z, state.log_scale - log_scale]);
+    error.dot(&(ekf.covariance().try_inverse().unwrap() * error))
+}
+
+#[test]
+fn so_is_that_of_a_scale_that_is_known_to_a_twentieth() {
+    // χ² with 350 degrees of freedom, 95 % band, over 50 runs.
+    let mean = |sigma| {
+        (0..50)
+            .map(|seed| nees_with_scale(seed, sigma))
+            .sum::<f64>()
+            / 50.0
+    };
+    let found = mean(0.05);
+    assert!((300.1 / 50.0..403.7 / 50.0).contains(&found), "{found}");
+    // A fifth is too far for a linear filter: its covariance is known to be too small, but not by half.
+    let far = mean(0.2);
+    assert!(far < 1.5 * 7.0, "{far}");
+}
+
 #[test]
 fn an_unknown_scale_is_learnt_from_velocities() {
     let rng = &mut Pcg64::seed_from_u64(9);

@@ -1,62 +1,14 @@
 //! The explorer command as a user runs it: results on stdout, one clear line for bad input.
 
-#![allow(
-    clippy::expect_used,
-    clippy::print_stdout,
-    reason = "a test that fails should say where"
-)]
+#![allow(clippy::expect_used, reason = "a test that fails should say where")]
+
+mod command;
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
+use command::{complaint, data, explorer, file, folder, json};
 use serde_json::Value;
-
-fn explorer(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_explorer"))
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
-
-/// A folder of this test's own, empty.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
-    folder
-}
-
-fn file(folder: &Path, name: &str, content: &str) -> String {
-    let path = folder.join(name);
-    fs::write(&path, content).expect("a file for the test");
-    path.display().to_string()
-}
-
-/// Runs a command that must fail with one line on stderr and nothing on stdout; gives the line.
-fn complaint(arguments: &[&str]) -> String {
-    let output = explorer(arguments);
-    let line = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {line}");
-    assert!(output.stdout.is_empty(), "{arguments:?} printed a result");
-    assert_eq!(
-        line.trim_end().lines().count(),
-        1,
-        "more than one line: {line}"
-    );
-    assert!(
-        line.starts_with("explorer: ") && line.contains("; "),
-        "no advice: {line}"
-    );
-    line
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = explorer(arguments);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {errors}");
-    serde_json::from_slice(&output.stdout).expect("one JSON object on stdout")
-}
 
 fn assert_keys(value: &Value, keys: &[&str]) {
     for key in keys {
@@ -432,22 +384,9 @@ fn unknown_worlds_are_refused_with_the_known_ones() {
     );
 }
 
-/// Where the published maps lie, or `None` with a line that says so.
-fn data() -> Option<PathBuf> {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").into();
-    let root = std::env::var_os("EXPLORER_DATA")
-        .map_or(default, PathBuf::from)
-        .join("data");
-    if root.is_dir() {
-        return Some(root);
-    }
-    println!("skipped: no maps in {} (set EXPLORER_DATA)", root.display());
-    None
-}
-
 #[test]
 fn real_maps_run_to_the_end() {
-    let Some(data) = data() else { return };
+    let Some(data) = data("") else { return };
     let folder = folder("real");
     for (path, up, points) in [
         ("tello-orbslam-rooms/fares.csv", "0,-1,0", 4_436),

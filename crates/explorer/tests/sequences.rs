@@ -1,71 +1,13 @@
 //! `explorer slam` and `explorer evaluate` as a user runs them.
 
-#![allow(
-    clippy::expect_used,
-    clippy::print_stdout,
-    reason = "a test that fails should say where"
-)]
+#![allow(clippy::expect_used, reason = "a test that fails should say where")]
+
+mod command;
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
+use command::{complaint, data, explorer, folder, json, text};
 use serde_json::Value;
-
-fn explorer(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_explorer"))
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = explorer(&[arguments, &["--json"]].concat());
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {errors}");
-    serde_json::from_slice(&output.stdout).expect("one JSON object on stdout")
-}
-
-/// One line on stderr, nothing on stdout, exit code 1.
-fn complaint(arguments: &[&str]) -> String {
-    let output = explorer(arguments);
-    let line = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {line}");
-    assert!(output.stdout.is_empty(), "{arguments:?} printed a result");
-    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
-    assert!(
-        line.starts_with("explorer: ") && line.contains("; "),
-        "{line}"
-    );
-    line
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
-    folder
-}
-
-fn text(path: &Path) -> String {
-    path.display().to_string()
-}
-
-fn data(name: &str) -> Option<PathBuf> {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").into();
-    let path = std::env::var_os("EXPLORER_DATA")
-        .map_or(default, PathBuf::from)
-        .join("data")
-        .join(name);
-    if path.is_dir() {
-        return Some(path);
-    }
-    println!(
-        "skipped: {} is not there (set EXPLORER_DATA)",
-        path.display()
-    );
-    None
-}
 
 /// A helix, its positions multiplied by `scale`.
 fn helix(scale: f64) -> String {

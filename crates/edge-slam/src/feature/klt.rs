@@ -274,6 +274,50 @@ mod tests {
     }
 
     #[test]
+    fn gradients_are_those_of_the_pattern() {
+        let image = waves(0.0, 0.0);
+        let mut patch = Patch::default();
+        let centre = [80.3, 60.7];
+        patch.describe(&image.view(), centre, 7).unwrap();
+        let at = |k: usize| {
+            (
+                centre[0] + (k % 15) as f64 - 7.0,
+                centre[1] + (k / 15) as f64 - 7.0,
+            )
+        };
+        for (k, (across, down)) in patch.across.iter().zip(&patch.down).enumerate() {
+            let (x, y) = at(k);
+            let (a, b) = (0.21 * x + 0.05 * y, 0.17 * y - 0.04 * x);
+            let expected = [
+                60.0 * 0.21 * a.cos() + 50.0 * 0.04 * b.sin(),
+                60.0 * 0.05 * a.cos() - 50.0 * 0.17 * b.sin(),
+            ];
+            // Rounded grey levels are off by half a level.
+            assert!(
+                (f64::from(*across) - expected[0]).abs() < 0.7,
+                "{across} {expected:?}"
+            );
+            assert!(
+                (f64::from(*down) - expected[1]).abs() < 0.7,
+                "{down} {expected:?}"
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_first_step_goes_nearly_all_the_way(dx in -0.5..0.5f64, dy in -0.5..0.5f64) {
+            let (from, to) = (waves(0.0, 0.0), waves(dx, dy));
+            let config = KltConfig { steps: 1, ..KltConfig::default() };
+            let place = [80.3, 60.7];
+            let found = Patch::default().align(&from.view(), &to.view(), place, place, &config);
+            let [x, y] = found.unwrap();
+            let left = (x - place[0] - dx).hypot(y - place[1] - dy);
+            prop_assert!(left < 0.03 + 0.1 * dx.hypot(dy), "{left}");
+        }
+    }
+
+    #[test]
     fn flat_and_vanished_patches_are_lost() {
         let flat = GrayImage::filled(160, 120, 90);
         let points = [[80.0, 60.0]];

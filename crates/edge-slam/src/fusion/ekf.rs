@@ -249,14 +249,8 @@ impl Ekf {
             });
         }
         let dt = sample.time - self.time;
-        let (turned, slopes) = self.world_velocity(&sample.velocity);
-        self.state.position += turned * dt;
-        let mut transition = StateCovariance::identity();
-        for (k, slope) in slopes.into_iter().enumerate() {
-            transition
-                .fixed_view_mut::<3, 1>(0, 3 + k)
-                .copy_from(&(slope * dt));
-        }
+        let transition = self.transition(&sample.velocity, dt);
+        self.state.position += self.world_velocity(&sample.velocity).0 * dt;
         let age = sample.time - self.fixed_at;
         let noise = self.config.process.covariance(sample.battery, age, dt);
         self.covariance = transition * self.covariance * transition.transpose() + noise;
@@ -300,11 +294,12 @@ impl Ekf {
         self.fix(position, pose.attitude, matrix, pose.distance, pose.inliers)
     }
 
-    /// Corrects position, attitude and scale with a displacement since an anchor:
-    /// 0 = R₀ᵀ (p − p₀) − eˢ d, so that ∂/∂s = −eˢ d, which is −R₀ᵀ (p − p₀) at the solution.
+    /// Corrects position, attitude and scale with a displacement d since an anchor. What is measured is
+    /// d = e⁻ˢ R₀ᵀ (p − p₀); times eˢ, to weigh it in metres, the innovation is eˢ d − R₀ᵀ (p − p₀) and the Jacobian
+    /// R₀ᵀ by p and −R₀ᵀ (p − p₀) by s.
     ///
-    /// The latter is used: with the measured d the slope would share its noise with the innovation, and every update
-    /// would shrink the scale a little.
+    /// Taken as a constraint 0 = R₀ᵀ (p − p₀) − eˢ d the slope by s would be −eˢ d: the measured d would share its noise
+    /// with the innovation, and every update would shrink the scale a little.
     ///
     /// # Errors
     /// [`FusionError`] for numbers that are not finite or a pitch that is too steep.
@@ -323,20 +318,25 @@ impl Ekf {
         }
         self.check_pitch(odometry.attitude.y)?;
         let scaled = odometry.displacement * self.state.scale();
-        let back = odometry.anchor_rotation.inverse();
-        let way = back * (self.state.position - odometry.anchor_position);
-        let predicted = way - scaled;
-        let mut matrix = SMatrix::<f64, 6, 7>::zeros();
-        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(back.matrix());
-        matrix.fixed_view_mut::<3, 1>(0, 6).copy_from(&-way);
-        matrix.fixed_view_mut::<3, 3>(3, 3).fill_with_identity();
+        let (way, matrix) = self.odometry_slopes(odometry);
         self.fix(
-            -predicted,
+            scaled - way,
             odometry.attitude,
             matrix,
             scaled.norm(),
             odometry.inliers,
         )
+    }
+
+    /// The way since the anchor in the odometry's frame, metres, and the Jacobian of the measurement.
+    fn odometry_slopes(&self, odometry: &AnchoredOdometry) -> (Vector3<f64>, SMatrix<f64, 6, 7>) {
+        let back = odometry.anchor_rotation.inverse();
+        let way = back * (self.state.position - odometry.anchor_position);
+        let mut matrix = SMatrix::<f64, 6, 7>::zeros();
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(back.matrix());
+        matrix.fixed_view_mut::<3, 1>(0, 6).copy_from(&-way);
+        matrix.fixed_view_mut::<3, 3>(3, 3).fill_with_identity();
+        (way, matrix)
     }
 
     fn fix(
@@ -409,6 +409,18 @@ impl Ekf {
         })
     }
 
+    /// F: how the state after `dt` seconds depends on the state now.
+    fn transition(&self, velocity: &Vector3<f64>, dt: f64) -> StateCovariance {
+        let (_, slopes) = self.world_velocity(velocity);
+        let mut transition = StateCovariance::identity();
+        for (k, slope) in slopes.into_iter().enumerate() {
+            transition
+                .fixed_view_mut::<3, 1>(0, 3 + k)
+                .copy_from(&(slope * dt));
+        }
+        transition
+    }
+
     /// The velocity in the world and its derivatives by roll, pitch and yaw.
     fn world_velocity(&self, velocity: &Vector3<f64>) -> (Vector3<f64>, [Vector3<f64>; 3]) {
         let attitude = match self.config.velocity_frame {
@@ -430,5 +442,96 @@ impl Ekf {
         Err(FusionError::GimbalLock {
             pitch_degrees: pitch.to_degrees(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Rotation3;
+    use proptest::prelude::*;
+
+    /// A filter somewhere, turned, with a scale.
+    fn filter(state: [f64; 7], velocity_frame: VelocityFrame) -> Ekf {
+        let config = EkfConfig {
+            velocity_frame,
+            ..EkfConfig::default()
+        };
+        let [x, y, z, roll, pitch, yaw, s] = state;
+        let attitude = Vector3::new(roll, pitch, yaw);
+        let mut ekf = Ekf::new(config, 0.0, Vector3::new(x, y, z), attitude).unwrap();
+        ekf.state.log_scale = s;
+        ekf
+    }
+
+    fn vector(state: &NavigationState) -> SVector<f64, 7> {
+        let (p, a) = (state.position, state.attitude);
+        SVector::from([p.x, p.y, p.z, a.x, a.y, a.z, state.log_scale])
+    }
+
+    /// Central differences of what is computed from the state, by all seven of its parts.
+    fn differences<const N: usize>(
+        ekf: &Ekf,
+        compute: impl Fn(&Ekf) -> SVector<f64, N>,
+    ) -> SMatrix<f64, N, 7> {
+        let mut matrix = SMatrix::<f64, N, 7>::zeros();
+        for k in 0..7 {
+            let at = |step: f64| {
+                let mut moved = ekf.clone();
+                let mut change = SVector::<f64, 7>::zeros();
+                change[k] = step;
+                moved.state = ekf.state.moved(&change);
+                compute(&moved)
+            };
+            matrix.set_column(k, &((at(1e-6) - at(-1e-6)) / 2e-6));
+        }
+        matrix
+    }
+
+    proptest! {
+        #[test]
+        fn the_transition_is_the_derivative_of_the_prediction(
+            state in prop::array::uniform7(-1.2..1.2f64), velocity in prop::array::uniform3(-2.0..2.0f64),
+            dt in 0.01..1.0f64,
+        ) {
+            for frame in [VelocityFrame::Body, VelocityFrame::YawLevelled, VelocityFrame::World] {
+                let ekf = filter(state, frame);
+                let velocity = Vector3::from(velocity);
+                let numeric = differences(&ekf, |ekf| {
+                    let mut ekf = ekf.clone();
+                    ekf.predict(&FlightSample { time: dt, velocity, battery: 0.7 }).unwrap();
+                    vector(&ekf.state)
+                });
+                let error = (numeric - ekf.transition(&velocity, dt)).abs().max();
+                prop_assert!(error < 1e-8, "{frame:?} {error}");
+            }
+        }
+
+        #[test]
+        fn the_odometry_s_slopes_are_derivatives_wherever_the_state_is(
+            state in prop::array::uniform7(-1.2..1.2f64), displacement in prop::array::uniform3(-2.0..2.0f64),
+            anchor in prop::array::uniform3(-2.0..2.0f64), turn in prop::array::uniform3(-2.0..2.0f64),
+        ) {
+            let ekf = filter(state, VelocityFrame::World);
+            // Far from the solution: the innovation is as great as the displacement.
+            let odometry = AnchoredOdometry {
+                anchor_position: anchor.into(),
+                anchor_rotation: Rotation3::new(Vector3::from(turn)),
+                displacement: displacement.into(),
+                attitude: Vector3::zeros(),
+                inliers: 100,
+            };
+            let measured = |ekf: &Ekf| {
+                let back = odometry.anchor_rotation.inverse();
+                let way = back * (ekf.state.position - odometry.anchor_position) / ekf.state.scale();
+                let a = ekf.state.attitude;
+                SVector::from([way.x, way.y, way.z, a.x, a.y, a.z])
+            };
+            let mut numeric = differences(&ekf, measured);
+            let metres = numeric.fixed_rows::<3>(0) * ekf.state.scale();
+            numeric.fixed_rows_mut::<3>(0).copy_from(&metres);
+            let error = (numeric - ekf.odometry_slopes(&odometry).1).abs().max();
+            prop_assert!(error < 1e-7, "{error}");
+        }
     }
 }

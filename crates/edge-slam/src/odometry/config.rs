@@ -1,14 +1,26 @@
 //! What the odometry can be told, and what it refuses.
 
-use crate::feature::{MatchConfig, OrbConfig, OrbConfigError, Selection};
+use crate::feature::{KltConfig, MatchConfig, OrbConfig, OrbConfigError, Selection};
 use crate::pnp::PnpConfig;
 use crate::two_view::TwoViewConfig;
+
+/// How a frame's features are found again.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Tracker {
+    /// ORB in every frame, matched with the keyframe's.
+    #[default]
+    Orb,
+    /// The keyframe's patches are followed; ORB's corners are sought in keyframes only.
+    Klt(KltConfig),
+}
 
 /// Parameters of [`super::Odometry`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OdometryConfig {
     /// Features of each frame. Default 1,000, chosen by [`Selection::Balanced`].
     pub orb: OrbConfig,
+    /// How the keyframe's features are found in a frame. Default [`Tracker::Orb`].
+    pub tracker: Tracker,
     /// Matching of a frame with its keyframe.
     pub matching: MatchConfig,
     /// Monocular start and recovery.
@@ -34,6 +46,7 @@ impl Default for OdometryConfig {
                 selection: Selection::Balanced,
                 ..OrbConfig::default()
             },
+            tracker: Tracker::default(),
             matching: MatchConfig::default(),
             two_view: TwoViewConfig::default(),
             pnp: PnpConfig {

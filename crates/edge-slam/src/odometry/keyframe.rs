@@ -5,6 +5,7 @@ use nalgebra::{Isometry3, Point2, Point3};
 use super::sight::Sight;
 use crate::camera::PinholeCamera;
 use crate::feature::Match;
+use crate::image::Pyramid;
 use crate::pnp::Observation;
 use crate::two_view::triangulate;
 
@@ -17,6 +18,9 @@ pub(super) struct Keyframe {
     pub(super) in_map: Vec<Option<usize>>,
     /// Most inliers that a frame had against this keyframe.
     pub(super) most_inliers: usize,
+    /// For KLT: the image, and where each feature was seen last.
+    pub(super) pyramid: Option<Pyramid>,
+    pub(super) seen_at: Vec<[f64; 2]>,
 }
 
 impl Keyframe {
@@ -27,6 +31,8 @@ impl Keyframe {
             world_from_camera,
             in_map,
             most_inliers: 0,
+            pyramid: None,
+            seen_at: Vec::new(),
         }
     }
 

@@ -4,12 +4,13 @@
 //! without it, the median depth at the start.
 
 mod config;
+mod front_end;
 mod keyframe;
 mod map_builder;
 mod sight;
 mod telemetry;
 mod tracker;
 
-pub use config::{OdometryConfig, OdometryError};
+pub use config::{OdometryConfig, OdometryError, Tracker};
 pub use telemetry::{FusedPose, TelemetryFusion};
 pub use tracker::{Odometry, Tracked};

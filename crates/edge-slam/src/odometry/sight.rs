@@ -2,10 +2,9 @@
 
 use nalgebra::{Point2, Point3};
 
-use crate::Frame;
 use crate::camera::Camera;
 use crate::depth::DepthImage;
-use crate::feature::{Features, OrbExtractor};
+use crate::feature::Features;
 
 /// Features of a frame.
 #[derive(Debug, Clone)]
@@ -19,13 +18,11 @@ pub(super) struct Sight {
 
 impl Sight {
     pub(super) fn new(
-        frame: &Frame<'_>,
+        features: Features,
         depth: Option<&DepthImage>,
         camera: &Camera,
-        extractor: &OrbExtractor,
         farthest: f64,
     ) -> Self {
-        let features = extractor.extract(&frame.image);
         let raw: Vec<Point2<f64>> = features
             .keypoints
             .iter()
@@ -47,6 +44,14 @@ impl Sight {
             pixels,
             points,
         }
+    }
+
+    /// Adds another sight of the same frame.
+    pub(super) fn append(&mut self, more: Self) {
+        self.features.keypoints.extend(more.features.keypoints);
+        self.features.descriptors.extend(more.features.descriptors);
+        self.pixels.extend(more.pixels);
+        self.points.extend(more.points);
     }
 
     /// Standard deviation of a keypoint's place, pixels: one pixel of its pyramid level.

@@ -6,7 +6,7 @@
 //!    velocities say was travelled and what the odometry says; from then on it is a state of the filter.
 //! 4. A new epoch is anchored where the filter is then.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, Similarity3, UnitQuaternion, Vector3};
 
 use super::Tracked;
 use crate::fusion::{
@@ -99,6 +99,26 @@ impl TelemetryFusion {
         &self.ekf
     }
 
+    /// Takes the present epoch's odometry (poses, map) to the filter's world, with the newest scale; `None` until the
+    /// unit is known. Only as good as the anchor: the filter's own position has less drift.
+    #[must_use]
+    pub fn world_from_odometry(&self) -> Option<Similarity3<f64>> {
+        let anchor = self.anchor?;
+        let turn = UnitQuaternion::from_rotation_matrix(&anchor.world_from_odometry);
+        let scale = self.ekf.state().scale();
+        let shift = anchor.position - turn * anchor.origin * scale;
+        Some(Similarity3::from_parts(shift.into(), turn, scale))
+    }
+
+    /// World from camera by the filter, metres.
+    #[must_use]
+    pub fn world_from_camera(&self) -> Isometry3<f64> {
+        let state = self.ekf.state();
+        let rotation = state.rotation() * self.body_from_camera;
+        let turn = UnitQuaternion::from_rotation_matrix(&rotation);
+        Isometry3::from_parts(state.position.into(), turn)
+    }
+
     /// Takes a sample of the telemetry, in the order of time, and its attitude where it has one.
     ///
     /// # Errors
@@ -139,14 +159,9 @@ impl TelemetryFusion {
             Some(pose) => self.fuse(time, pose, tracked.inliers, is_metric)?,
             None => None,
         };
-        let state = *self.ekf.state();
-        let rotation = state.rotation() * self.body_from_camera;
         Ok(FusedPose {
-            state,
-            world_from_camera: Isometry3::from_parts(
-                state.position.into(),
-                UnitQuaternion::from_rotation_matrix(&rotation),
-            ),
+            state: *self.ekf.state(),
+            world_from_camera: self.world_from_camera(),
             outcome,
         })
     }

@@ -1,6 +1,6 @@
 //! The odometry itself.
 //!
-//! 1. Features; matches with the keyframe.
+//! 1. Features; matches with the keyframe (ORB), or its patches followed (KLT).
 //! 2. Keyframe with points: pose by PnP from the last one; if that fails, again from the two-view rotation.
 //!    Keyframe without points (monocular start): two-view pose once it is trusted; its median depth is the unit.
 //! 3. Few inliers left: this frame becomes the keyframe; it inherits points, and gets new ones by depth or
@@ -15,6 +15,7 @@ use nalgebra::{Isometry3, Point3};
 use rand::Rng;
 use slam_bridge::{Map, SlamSource, SlamUpdate, TrackingState};
 
+use super::front_end::FrontEnd;
 use super::keyframe::Keyframe;
 use super::map_builder::MapBuilder;
 use super::sight::Sight;
@@ -22,7 +23,7 @@ use super::{OdometryConfig, OdometryError};
 use crate::Frame;
 use crate::camera::Camera;
 use crate::depth::DepthImage;
-use crate::feature::{Match, OrbExtractor, match_descriptors};
+use crate::feature::Match;
 use crate::pnp::{PnpPose, refine_pose};
 use crate::two_view::{TwoView, estimate_two_view};
 
@@ -43,8 +44,7 @@ pub struct Tracked {
 #[derive(Debug, Clone)]
 pub struct Odometry {
     config: OdometryConfig,
-    camera: Camera,
-    extractor: OrbExtractor,
+    front_end: FrontEnd,
     keyframe: Option<Keyframe>,
     frame_from_keyframe: Isometry3<f64>,
     lost: usize,
@@ -62,8 +62,7 @@ impl Odometry {
         config.validate()?;
         Ok(Self {
             config,
-            camera,
-            extractor: OrbExtractor::new(config.orb)?,
+            front_end: FrontEnd::new(camera, &config)?,
             keyframe: None,
             frame_from_keyframe: Isometry3::identity(),
             lost: 0,
@@ -81,20 +80,15 @@ impl Odometry {
         depth: Option<&DepthImage>,
         rng: &mut impl Rng,
     ) -> Tracked {
-        let farthest = self.config.farthest;
-        let sight = Sight::new(frame, depth, &self.camera, &self.extractor, farthest);
+        let frame = &Frame { depth, ..*frame };
         let tracked = match self.keyframe.take() {
-            None => self.begin(sight, Isometry3::identity(), frame.time),
+            None => self.begin(Isometry3::identity(), frame),
             Some(mut keyframe) => {
-                let matches = match_descriptors(
-                    &keyframe.sight.features.descriptors,
-                    &sight.features.descriptors,
-                    &self.config.matching,
-                );
+                let (sight, matches) = self.front_end.follow(&mut keyframe, frame);
                 if keyframe.known_points() == 0 {
                     self.initialise(&mut keyframe, &sight, &matches, rng);
                 }
-                self.follow(keyframe, sight, &matches, frame.time, rng)
+                self.follow(keyframe, sight, &matches, frame, rng)
             }
         };
         self.updates.push_back(SlamUpdate {
@@ -132,13 +126,14 @@ impl Odometry {
     }
 
     /// Makes the first keyframe of an epoch.
-    fn begin(&mut self, sight: Sight, pose: Isometry3<f64>, time: f64) -> Tracked {
-        let mut keyframe = Keyframe::new(sight, pose);
+    fn begin(&mut self, pose: Isometry3<f64>, frame: &Frame<'_>) -> Tracked {
+        let sight = self.front_end.first_sight(frame);
+        let mut keyframe = self.front_end.keyframe(sight, pose, frame);
         let points = keyframe.known_points();
         self.is_metric = points > 0;
         self.frame_from_keyframe = Isometry3::identity();
         self.lost = 0;
-        self.builder.add(&mut keyframe, time, self.is_metric);
+        self.builder.add(&mut keyframe, frame.time, self.is_metric);
         self.keyframe = Some(keyframe);
         let known = points >= self.config.pnp.min_inliers;
         Tracked {
@@ -162,7 +157,7 @@ impl Odometry {
         rng: &mut impl Rng,
     ) {
         let (first, second, index) = keyframe.pixel_pairs(sight, matches);
-        let camera = &self.camera.pinhole;
+        let camera = &self.front_end.camera.pinhole;
         let found = estimate_two_view(&first, &second, camera, &self.config.two_view, rng);
         let Some(found) = found.ok().filter(TwoView::is_confident) else {
             return;
@@ -196,13 +191,13 @@ impl Odometry {
         mut keyframe: Keyframe,
         sight: Sight,
         matches: &[Match],
-        time: f64,
+        frame: &Frame<'_>,
         rng: &mut impl Rng,
     ) -> Tracked {
         let started = keyframe.known_points() > 0;
         let factor = self.config.orb.scale_factor;
         let (observations, index) = keyframe.observations(&sight, matches, factor);
-        let camera = &self.camera.pinhole;
+        let camera = &self.front_end.camera.pinhole;
         let pnp = |guess: &Isometry3<f64>| {
             refine_pose(&observations, camera, guess, &self.config.pnp)
                 .ok()
@@ -218,7 +213,9 @@ impl Odometry {
             pnp(&guess)
         });
         let Some(found) = found else {
-            return self.miss(keyframe, sight, started, time);
+            // Before the start, waiting for parallax is normal; but not for what is out of sight.
+            let waits = !started && matches.len() >= self.config.two_view.min_inliers;
+            return self.miss(keyframe, waits, frame);
         };
         self.lost = 0;
         self.frame_from_keyframe = found.camera_from_world;
@@ -228,7 +225,7 @@ impl Odometry {
         let is_keyframe = self.wants_keyframe(&keyframe, inliers);
         if is_keyframe {
             let agreeing: Vec<usize> = found.inliers.iter().map(|&i| index[i]).collect();
-            let mut next = Keyframe::new(sight, pose);
+            let mut next = self.front_end.keyframe(sight, pose, frame);
             keyframe.hand_over(
                 &mut next,
                 matches,
@@ -237,7 +234,7 @@ impl Odometry {
                 self.config.least_angle,
             );
             self.frame_from_keyframe = Isometry3::identity();
-            self.builder.add(&mut next, time, self.is_metric);
+            self.builder.add(&mut next, frame.time, self.is_metric);
             keyframe = next;
         }
         self.keyframe = Some(keyframe);
@@ -257,18 +254,18 @@ impl Odometry {
     }
 
     /// A frame without a pose.
-    fn miss(&mut self, keyframe: Keyframe, sight: Sight, started: bool, time: f64) -> Tracked {
+    fn miss(&mut self, keyframe: Keyframe, waits: bool, frame: &Frame<'_>) -> Tracked {
         self.lost += 1;
-        // Before the start, waiting for parallax is normal: only give up when nothing matches any more.
-        let patience = if started {
-            self.config.patience
-        } else {
+        let started = keyframe.known_points() > 0;
+        let patience = if waits {
             20 * self.config.patience
+        } else {
+            self.config.patience
         };
         if self.lost > patience {
             let pose = keyframe.world_from_camera * self.frame_from_keyframe.inverse();
             self.builder.begin_epoch();
-            let mut tracked = self.begin(sight, pose, time);
+            let mut tracked = self.begin(pose, frame);
             tracked.is_keyframe = true;
             return tracked;
         }
@@ -306,7 +303,9 @@ impl SlamSource for Odometry {
 mod tests {
     use super::*;
     use crate::camera::PinholeCamera;
+    use crate::feature::KltConfig;
     use crate::image::{GrayImage, gaussian_blur};
+    use crate::odometry::Tracker;
     use rand::SeedableRng;
 
     /// A wall of blurred dots at z = 2, seen by a camera that moves sideways: an image shifted by whole pixels.
@@ -326,13 +325,26 @@ mod tests {
     }
 
     fn odometry() -> Odometry {
+        with(Tracker::Orb)
+    }
+
+    fn with(tracker: Tracker) -> Odometry {
         let pinhole = PinholeCamera::new(200.0, 200.0, 150.0, 100.0).unwrap();
-        Odometry::new(Camera::ideal(pinhole), OdometryConfig::default()).unwrap()
+        let config = OdometryConfig {
+            tracker,
+            ..OdometryConfig::default()
+        };
+        Odometry::new(Camera::ideal(pinhole), config).unwrap()
     }
 
     #[test]
     fn a_sideways_move_with_depth_is_metric() {
-        let mut odometry = odometry();
+        for tracker in [Tracker::Orb, Tracker::Klt(KltConfig::default())] {
+            moves_sideways(with(tracker));
+        }
+    }
+
+    fn moves_sideways(mut odometry: Odometry) {
         let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
         let depth = DepthImage::new(vec![2.0; 300 * 200], 300, 200).unwrap();
         for step in 0..20 {

@@ -1,9 +1,9 @@
 //! The camera of a recorded folder: its own file, else the calibration that the TUM benchmark publishes.
 
-use std::fs;
 use std::path::Path;
 
 use super::SequenceError;
+use super::folder::optional_text;
 use crate::camera::{Camera, PinholeCamera, RadialTangential};
 
 /// File with the 3x3 matrix K.
@@ -11,22 +11,27 @@ const NAME: &str = "camera-intrinsics.txt";
 
 /// The folder's `camera-intrinsics.txt`, if there is one.
 pub(super) fn read_intrinsics(folder: &Path) -> Result<Option<Camera>, SequenceError> {
-    let Ok(text) = fs::read_to_string(folder.join(NAME)) else {
-        return Ok(None);
-    };
-    let numbers: Vec<f64> = text
-        .split_whitespace()
-        .filter_map(|word| word.parse().ok())
-        .collect();
+    optional_text(folder, NAME)?
+        .map(|text| parse_intrinsics(&text))
+        .transpose()
+}
+
+/// The 3x3 matrix K, row by row; a word that is no number, or a number too many or too few, is an error.
+pub(super) fn parse_intrinsics(text: &str) -> Result<Camera, SequenceError> {
+    let broken = |line: usize| SequenceError::Line { name: NAME, line };
+    let mut numbers = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        let content = line.split('#').next().unwrap_or_default();
+        for word in content.split_whitespace() {
+            let number = word.parse::<f64>().map_err(|_| broken(index + 1))?;
+            numbers.push(number);
+        }
+    }
     let pinhole = match numbers[..] {
-        [fx, _, cx, _, fy, cy, ..] => PinholeCamera::new(fx, fy, cx, cy).ok(),
+        [fx, _, cx, _, fy, cy, _, _, _] => PinholeCamera::new(fx, fy, cx, cy).ok(),
         _ => None,
     };
-    let broken = SequenceError::Line {
-        name: NAME,
-        line: 1,
-    };
-    pinhole.map(Camera::ideal).ok_or(broken).map(Some)
+    pinhole.map(Camera::ideal).ok_or(broken(1))
 }
 
 /// The calibration that the TUM benchmark publishes for its three cameras, told by `fr1`, `freiburg1` and so on in

@@ -12,7 +12,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::calibration::{read_intrinsics, tum_camera};
-use super::listing::{Entry, pair, parse_list};
+use super::listing::{Entry, pair, parse_list, parse_times};
 use super::{DecodeError, decode_depth, decode_gray};
 use crate::camera::Camera;
 use crate::depth::DepthImage;
@@ -107,11 +107,10 @@ impl ImageSequence {
     /// [`SequenceError`] for missing files and lines that are not understood.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
         let own = read_intrinsics(folder)?;
-        let (frames, depth_units_per_metre, published) =
-            match fs::read_to_string(folder.join("rgb.txt")) {
-                Ok(list) => (tum_frames(folder, &list)?, 5000.0, tum_camera(folder)),
-                Err(_) => (plain_frames(folder)?, 1000.0, None),
-            };
+        let (frames, depth_units_per_metre, published) = match optional_text(folder, "rgb.txt")? {
+            Some(list) => (tum_frames(folder, &list)?, 5000.0, tum_camera(folder)),
+            None => (plain_frames(folder)?, 1000.0, None),
+        };
         Ok(Self {
             frames,
             names_camera: own.is_some(),
@@ -124,6 +123,11 @@ impl ImageSequence {
     #[must_use]
     pub fn len(&self) -> usize {
         self.frames.len()
+    }
+
+    /// The frames' times in their order, seconds.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        self.frames.iter().map(|frame| frame.time)
     }
 
     /// Whether any frame has recorded depth.
@@ -173,11 +177,21 @@ fn read(path: &Path) -> Result<Vec<u8>, SequenceError> {
     })
 }
 
+/// The text of a file that may be absent, but not unreadable.
+pub(super) fn optional_text(folder: &Path, name: &str) -> Result<Option<String>, SequenceError> {
+    let path = folder.join(name);
+    match fs::read_to_string(&path) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(SequenceError::File { path, source }),
+    }
+}
+
 fn tum_frames(folder: &Path, list: &str) -> Result<Vec<FrameFiles>, SequenceError> {
     let images = parse_list(list, "rgb.txt")?;
-    let depths = match fs::read_to_string(folder.join("depth.txt")) {
-        Ok(list) => parse_list(&list, "depth.txt")?,
-        Err(_) => Vec::new(),
+    let depths = match optional_text(folder, "depth.txt")? {
+        Some(list) => parse_list(&list, "depth.txt")?,
+        None => Vec::new(),
     };
     let partners = pair(&images, &depths, PAIRING);
     let frame = |(image, partner): (&Entry, Option<usize>)| FrameFiles {
@@ -232,19 +246,54 @@ fn image_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn read_times(folder: &Path) -> Result<Vec<f64>, SequenceError> {
-    let Ok(text) = fs::read_to_string(folder.join("timestamps.txt")) else {
-        return Ok(Vec::new());
-    };
-    let parse = |(index, line): (usize, &str)| {
-        let value = line
-            .split_whitespace()
-            .next()
-            .and_then(|word| word.parse::<f64>().ok());
-        value.filter(|v| v.is_finite()).ok_or(SequenceError::Line {
-            name: "timestamps.txt",
-            line: index + 1,
-        })
-    };
-    let filled = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.starts_with('#');
-    text.lines().enumerate().filter(filled).map(parse).collect()
+    match optional_text(folder, "timestamps.txt")? {
+        Some(text) => parse_times(&text),
+        None => Ok(Vec::new()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder of this test's own below the system's one for temporary files.
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("edge-slam {name} {}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(folder.join("gray")).unwrap();
+        fs::write(folder.join("gray/1.png"), "not read").unwrap();
+        folder
+    }
+
+    /// What is said of the file, which must be named.
+    fn complaint(folder: &Path, file: &str) -> SequenceError {
+        let error = ImageSequence::open(folder).unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains(file), "{text}");
+        error
+    }
+
+    #[test]
+    fn lists_that_are_there_but_unreadable_are_not_taken_for_absent() {
+        for file in [
+            "depth.txt",
+            "timestamps.txt",
+            "rgb.txt",
+            "camera-intrinsics.txt",
+        ] {
+            let place = folder(file);
+            if file == "depth.txt" {
+                fs::write(place.join("rgb.txt"), "1.0 gray/1.png\n").unwrap();
+            }
+            assert_eq!(ImageSequence::open(&place).unwrap().len(), 1, "{file}");
+            fs::write(place.join(file), b"1.0 \xFF\xFE.png\n").unwrap();
+            let error = complaint(&place, file);
+            assert!(matches!(error, SequenceError::File { .. }), "{error:?}");
+            fs::remove_file(place.join(file)).unwrap();
+            fs::create_dir(place.join(file)).unwrap();
+            let error = complaint(&place, file);
+            assert!(matches!(error, SequenceError::File { .. }), "{error:?}");
+            fs::remove_dir_all(&place).unwrap();
+        }
+    }
 }

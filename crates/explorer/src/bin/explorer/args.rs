@@ -8,7 +8,9 @@ mod emulate;
 mod slam;
 
 pub(crate) use emulate::Emulate;
-pub(crate) use slam::{AlignChoice, DepthChoice, Evaluate, Slam, join_model_file};
+pub(crate) use slam::{
+    AlignChoice, DepthChoice, Evaluate, Slam, TelemetryChoice, TrackerChoice, join_model_file,
+};
 
 /// Explores unknown rooms with a toy drone, and cleans, reads and plans on sparse SLAM maps.
 ///

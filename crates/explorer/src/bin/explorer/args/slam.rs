@@ -19,9 +19,19 @@ pub(crate) struct Slam {
     /// recorded by default.
     #[arg(long, value_name = "sensor|model FILE|none")]
     pub(crate) depth: Option<DepthChoice>,
+    /// How features are found again from frame to frame.
+    #[arg(long, value_enum, default_value_t = TrackerChoice::Orb)]
+    pub(crate) tracker: TrackerChoice,
     /// The camera, pixels; by default as the sequence's camera-intrinsics.txt says, or the TUM benchmark's own.
     #[arg(long, value_name = "fx,fy,cx,cy[,k1,k2,p1,p2[,k3]]", allow_hyphen_values = true, value_parser = camera)]
     pub(crate) camera: Option<Camera>,
+    /// The flight's telemetry, a recording of tello-sdk, or `none`; by default flight.tello beside the frames, where it
+    /// is there. Position and scale then come from the filter, in metres.
+    #[arg(long, value_name = "FILE|none")]
+    pub(crate) telemetry: Option<TelemetryChoice>,
+    /// When the recording began, on the clock of the frames.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = moment)]
+    pub(crate) telemetry_start: f64,
     /// Stop after so many frames.
     #[arg(long, value_name = "N")]
     pub(crate) frames: Option<usize>,
@@ -33,6 +43,33 @@ pub(crate) enum DepthChoice {
     Sensor,
     Model(PathBuf),
     None,
+}
+
+/// How features are found again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TrackerChoice {
+    /// Descriptors in every frame are matched.
+    Orb,
+    /// The keyframe's patches are followed.
+    Klt,
+}
+
+/// Where telemetry comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum TelemetryChoice {
+    File(PathBuf),
+    None,
+}
+
+impl FromStr for TelemetryChoice {
+    type Err = core::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "none" => Self::None,
+            file => Self::File(file.into()),
+        })
+    }
 }
 
 impl FromStr for DepthChoice {
@@ -113,6 +150,11 @@ pub(crate) enum AlignChoice {
     Se3,
     /// Nothing.
     None,
+}
+
+fn moment(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    value.ok_or_else(|| "must be a finite number of seconds".to_owned())
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

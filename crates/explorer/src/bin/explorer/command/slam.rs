@@ -5,6 +5,7 @@ use std::path::Path;
 
 use edge_slam::sequence::ImageSequence;
 use serde::Serialize;
+use slam_bridge::nalgebra::Similarity3;
 use slam_bridge::{Map, Scale, TimedPose, write_map_folder, write_ply, write_tum};
 
 use crate::args::{Output, Slam};
@@ -13,15 +14,17 @@ use crate::output::{deliver, write_file};
 use crate::plot::{self, AxisPair, Figure, Layer, Shape, Track, color, trajectory};
 use crate::progress::Progress;
 use crate::stopwatch::percentile;
-use crate::tracking::{self, DepthReport, Depths, Epoch, Tracking};
+use crate::tracking::{self, DepthReport, Depths, Epoch, FusionReport, Tracking};
 
 /// The command's JSON object.
 #[derive(Debug, Serialize)]
 struct SlamReport {
     /// Frames read.
     frames: usize,
-    /// Poses in trajectory.txt.
+    /// Frames that the camera tracked, of those in trajectory.txt.
     tracked: usize,
+    /// Poses in trajectory.txt: with telemetry also of frames that were not tracked.
+    poses: usize,
     /// Poses of all epochs: without metric depth only the longest epoch is written, for each has its own unit.
     tracked_in_all_epochs: usize,
     keyframes: usize,
@@ -33,6 +36,8 @@ struct SlamReport {
     points: usize,
     edge_points: usize,
     depth: DepthReport,
+    /// The filter, and what it was given.
+    fusion: FusionReport,
     /// What was written into the folder.
     files: Vec<String>,
 }
@@ -74,6 +79,8 @@ struct Found {
     edges: Vec<[f64; 3]>,
     fit: Option<edge_slam::depth::DepthFit>,
     metric: bool,
+    tracked: usize,
+    fusion: FusionReport,
 }
 
 impl Found {
@@ -94,22 +101,33 @@ impl Found {
         }
         let fit = epoch.fit();
         let scale = depths.report(fit.as_ref()).meters_per_unit;
-        if let Some(meters) = scale {
-            epoch.rescale(meters);
-        } else if !result.is_metric {
+        let mut fusion = result.fusion.clone();
+        let placed = epoch.placed;
+        if let Some(world) = placed.or_else(|| scale.map(Similarity3::from_scaling)) {
+            epoch.place(&world);
+        }
+        if scale.is_none() && !result.is_metric {
             // A network that failed its test says nothing about where edges are.
             epoch.edges.clear();
         }
-        let poses = match result.is_metric {
-            true => result.epochs.iter().flat_map(|e| e.poses.clone()).collect(),
-            false => epoch.poses.clone(),
+        fusion.meters_per_unit = placed.map(|world| world.scaling());
+        let all = || result.epochs.iter().map(|e| e.poses.len()).sum();
+        let (poses, tracked) = match (placed, result.is_metric) {
+            (Some(_), _) => (result.fused.clone(), all()),
+            (None, true) => {
+                let poses = result.epochs.iter().flat_map(|e| e.poses.clone());
+                (poses.collect(), all())
+            }
+            (None, false) => (epoch.poses.clone(), epoch.poses.len()),
         };
         Ok(Self {
             poses,
             edges: epoch.edge_points(),
             epoch,
             fit,
-            metric: result.is_metric || scale.is_some(),
+            metric: result.is_metric || scale.is_some() || placed.is_some(),
+            tracked,
+            fusion,
         })
     }
 
@@ -148,7 +166,8 @@ impl Found {
         let at = |share| percentile(result.milliseconds.clone(), share).unwrap_or(0.0);
         SlamReport {
             frames: result.frames,
-            tracked: self.poses.len(),
+            tracked: self.tracked,
+            poses: self.poses.len(),
             tracked_in_all_epochs: all(|epoch| epoch.poses.len()),
             keyframes: all(|epoch| epoch.keyframes),
             ms_median: at(0.5),
@@ -158,6 +177,7 @@ impl Found {
             points: self.epoch.map.points.len(),
             edge_points: self.edges.len(),
             depth: depths.report(self.fit.as_ref()),
+            fusion: self.fusion.clone(),
             files,
         }
     }
@@ -252,10 +272,35 @@ fn text(report: &SlamReport, folder: &Path) -> String {
         (None, _) if !report.metric => text.push_str("\nno metric scale: lengths are map units"),
         (None, _) => {}
     }
+    text.push_str(&fusion_text(&report.fusion));
     text.push_str(&format!(
         "\nwritten to {}: {}",
         folder.display(),
         report.files.join(", ")
     ));
     text
+}
+
+/// What moved the filter, or that there was none.
+fn fusion_text(fusion: &FusionReport) -> String {
+    let FusionReport {
+        samples,
+        accepted,
+        rejected,
+        dead_reckoned,
+        outside,
+        ..
+    } = fusion;
+    let Some(file) = &fusion.file else {
+        return "\nno telemetry: poses are the odometry's own, no filter was used".to_owned();
+    };
+    let Some(meters) = fusion.meters_per_unit else {
+        return format!(
+            "\ntelemetry of {file} ({samples} samples) not used: while tracked, the drone never moved at 0.15 m/s for a second"
+        );
+    };
+    format!(
+        "\nfused with {file}: {samples} samples; {accepted} visual poses taken, {rejected} refused, \
+         {dead_reckoned} frames by telemetry alone, {outside} outside of it; {meters:.3} m a unit of the odometry"
+    )
 }

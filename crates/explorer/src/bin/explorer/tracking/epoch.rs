@@ -1,13 +1,15 @@
 //! What was tracked without interruption: poses and map share one frame and, without metric depth, one unit.
 
 use edge_slam::depth::{DepthFit, fit_depth};
-use slam_bridge::nalgebra::{Isometry3, Point3};
+use slam_bridge::nalgebra::{Isometry3, Point3, Similarity3};
 use slam_bridge::{Map, Scale, TimedPose};
 
 /// One epoch of the odometry.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Epoch {
     pub(crate) poses: Vec<TimedPose>,
+    /// Takes poses and map to the filter's world, in metres; none without telemetry.
+    pub(crate) placed: Option<Similarity3<f64>>,
     pub(crate) keyframes: usize,
     pub(crate) map: Map,
     /// Edge points in the frame of their keyframe's camera, with its pose.
@@ -26,17 +28,22 @@ impl Epoch {
         fit_depth(&self.predicted, &self.triangulated).ok()
     }
 
-    /// Multiplies all lengths but those of the edges, which the network gave in metres.
-    pub(crate) fn rescale(&mut self, meters_per_unit: f64) {
+    /// Moves everything into a world whose unit is the metre. What edges look like from their cameras stays: sensor
+    /// and network give metres.
+    pub(crate) fn place(&mut self, world: &Similarity3<f64>) {
         let poses = self.poses.iter_mut().map(|pose| &mut pose.pose);
         let keyframes = self.map.keyframes.iter_mut();
         let keyframes = keyframes.map(|keyframe| &mut keyframe.world_from_camera);
         let seen = self.edges.iter_mut().map(|(pose, _)| pose);
         for pose in poses.chain(keyframes).chain(seen) {
-            pose.translation.vector *= meters_per_unit;
+            let centre = world * Point3::from(pose.translation.vector);
+            pose.rotation = world.isometry.rotation * pose.rotation;
+            pose.translation = centre.coords.into();
         }
         for point in &mut self.map.points {
-            point.position *= meters_per_unit;
+            point.position = world * point.position;
+            let direction = point.viewing_direction.as_mut();
+            direction.map(|direction| *direction = world.isometry.rotation * *direction);
         }
         self.map.scale = Scale::MetersPerUnit(1.0);
     }

@@ -1,11 +1,16 @@
-//! Tracking a recorded sequence: frame after frame through the odometry, edges of keyframes into space.
+//! Tracking a recorded sequence: frame after frame through the odometry, edges of keyframes into space,
+//! poses through the filter where the flight's telemetry was recorded.
 
 mod depth;
 mod epoch;
+mod flight;
+mod fusing;
 mod pictures;
 mod run;
 
 pub(crate) use depth::{DepthReport, Depths};
 pub(crate) use epoch::Epoch;
+pub(crate) use flight::Flight;
+pub(crate) use fusing::{Fusing, FusionReport};
 pub(crate) use pictures::draw_frame;
 pub(crate) use run::{Tracking, camera_of, track, unreadable};

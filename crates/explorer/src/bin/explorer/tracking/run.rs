@@ -4,14 +4,15 @@ use edge_slam::camera::Camera;
 use edge_slam::depth::DepthImage;
 use edge_slam::edge::{CannyConfig, canny, lift_chain, trace_chains};
 use edge_slam::evaluation::TimedPose;
+use edge_slam::feature::KltConfig;
 use edge_slam::image::GrayView;
-use edge_slam::odometry::{Odometry, OdometryConfig, Tracked};
+use edge_slam::odometry::{Odometry, OdometryConfig, Tracked, Tracker};
 use edge_slam::sequence::{ImageSequence, LoadedFrame, SequenceError};
 use rand::SeedableRng as _;
 use slam_bridge::nalgebra::Point3;
 
-use super::{Depths, Epoch};
-use crate::args::Slam;
+use super::{Depths, Epoch, Flight, Fusing, FusionReport};
+use crate::args::{Slam, TrackerChoice};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::stopwatch::timed;
@@ -27,6 +28,9 @@ pub(crate) struct Tracking {
     pub(crate) milliseconds: Vec<f64>,
     /// Whether the unit is the metre and epochs follow each other in one frame.
     pub(crate) is_metric: bool,
+    /// Poses by the filter, of all epochs in one world and in metres; empty without telemetry.
+    pub(crate) fused: Vec<TimedPose>,
+    pub(crate) fusion: FusionReport,
 }
 
 /// Shortest edge that goes into the map, pixels.
@@ -62,15 +66,24 @@ pub(crate) fn track(
     seed: u64,
     progress: &Progress,
 ) -> Result<Tracking, Failure> {
-    let mut odometry =
-        Odometry::new(camera, OdometryConfig::default()).map_err(Failure::internal)?;
+    let config = OdometryConfig {
+        tracker: match arguments.tracker {
+            TrackerChoice::Orb => Tracker::Orb,
+            TrackerChoice::Klt => Tracker::Klt(KltConfig::default()),
+        },
+        ..OdometryConfig::default()
+    };
+    let mut odometry = Odometry::new(camera, config).map_err(Failure::internal)?;
     let rng = &mut rand_pcg::Pcg64::seed_from_u64(seed);
     let count = arguments.frames.unwrap_or(usize::MAX).min(sequence.len());
+    let mut fusing = fusing(arguments, sequence, count)?;
     let mut tracking = Tracking {
         frames: count,
         epochs: vec![Epoch::default()],
         milliseconds: Vec::with_capacity(count),
         is_metric: depths.is_metric(),
+        fused: Vec::new(),
+        fusion: FusionReport::none(),
     };
     progress.count("tracking", count);
     for index in 0..count {
@@ -108,9 +121,49 @@ pub(crate) fn track(
             }
         }
         tracking.milliseconds.push(milliseconds);
+        if let Some(fusing) = &mut fusing {
+            fuse(fusing, &mut tracking, loaded.time, &tracked, &odometry)?;
+        }
         progress.advance();
     }
+    if let Some(fusing) = fusing {
+        tracking.fusion = fusing.report;
+    }
     Ok(tracking)
+}
+
+/// The filter, where there is telemetry.
+fn fusing(
+    arguments: &Slam,
+    sequence: &ImageSequence,
+    count: usize,
+) -> Result<Option<Fusing>, Failure> {
+    let Some(flight) = Flight::open(arguments)? else {
+        return Ok(None);
+    };
+    let times = sequence.times().take(count);
+    let ends = times.fold(None, |ends: Option<[f64; 2]>, time| {
+        let [first, last] = ends.unwrap_or([time; 2]);
+        Some([first.min(time), last.max(time)])
+    });
+    ends.map(|ends| Fusing::new(flight, ends)).transpose()
+}
+
+fn fuse(
+    fusing: &mut Fusing,
+    tracking: &mut Tracking,
+    time: f64,
+    tracked: &Tracked,
+    odometry: &Odometry,
+) -> Result<(), Failure> {
+    let epoch = odometry.current_map().epoch;
+    let pose = fusing.observe(time, tracked, epoch, odometry.is_metric())?;
+    let pose = pose.map(|pose| TimedPose { time, pose });
+    tracking.fused.extend(pose);
+    if let Some(epoch) = tracking.epochs.last_mut() {
+        epoch.placed = fusing.placed();
+    }
+    Ok(())
 }
 
 fn record(epoch: &mut Epoch, loaded: &LoadedFrame, tracked: &Tracked, odometry: &Odometry) {
