@@ -5,7 +5,6 @@
 mod command;
 
 use std::fs;
-use std::path::Path;
 
 use command::{complaint, data, explorer, file, folder, json};
 use serde_json::Value;
