@@ -42,8 +42,9 @@ impl Epoch {
         }
         for point in &mut self.map.points {
             point.position = world * point.position;
-            let direction = point.viewing_direction.as_mut();
-            direction.map(|direction| *direction = world.isometry.rotation * *direction);
+            if let Some(direction) = &mut point.viewing_direction {
+                *direction = world.isometry.rotation * *direction;
+            }
         }
         self.map.scale = Scale::MetersPerUnit(1.0);
     }
