@@ -1,22 +1,18 @@
 //! The network's published check vector; skipped where the file is not there.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test file")]
+#![allow(clippy::unwrap_used, reason = "a test file")]
 #![cfg(feature = "depth-onnx")]
 
-use std::path::PathBuf;
+mod shared;
 
 use edge_slam::depth::OnnxDepth;
+use shared::shared;
 
 #[test]
 fn the_check_vector_is_met() {
-    let root = std::env::var("EXPLORER_DATA")
-        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
-    let path: PathBuf = [root.as_str(), "models", "fastdepth_nyu.onnx"]
-        .iter()
-        .collect();
-    let Ok(bytes) = std::fs::read(&path) else {
-        println!("skipped: {} is not there", path.display());
+    let Some(path) = shared(&["models", "fastdepth_nyu.onnx"]) else {
         return;
     };
+    let bytes = std::fs::read(path).unwrap();
     let network = OnnxDepth::new(&bytes).unwrap();
     let value = |index: usize| {
         let (c, y, x) = (index / (224 * 224), index / 224 % 224, index % 224);

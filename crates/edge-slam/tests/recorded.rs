@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test file")]
 #![cfg(feature = "image-files")]
 
+mod shared;
+
 use std::path::PathBuf;
 
 use edge_slam::camera::Camera;
@@ -10,17 +12,11 @@ use edge_slam::evaluation::{Alignment, ApeConfig, TimedPose, absolute_pose_error
 use edge_slam::odometry::{Odometry, OdometryConfig};
 use edge_slam::sequence::ImageSequence;
 use rand::SeedableRng;
+use shared::shared;
 use slam_bridge::read_tum;
 
 fn folder(name: &str) -> Option<PathBuf> {
-    let root = std::env::var("EXPLORER_DATA")
-        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
-    let path: PathBuf = [root.as_str(), "data", name].iter().collect();
-    if path.is_dir() {
-        return Some(path);
-    }
-    println!("skipped: {} is not there", path.display());
-    None
+    shared(&["data", name])
 }
 
 fn run(sequence: &ImageSequence, camera: Camera, frames: usize, use_depth: bool) -> Vec<TimedPose> {

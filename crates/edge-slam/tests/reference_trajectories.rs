@@ -1,25 +1,19 @@
 //! The evaluator against figures that evo 1.38.1 gives for published trajectories.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test file")]
+#![allow(clippy::unwrap_used, reason = "a test file")]
 
-use std::path::PathBuf;
+mod shared;
 
 use edge_slam::evaluation::{
     Alignment, ApeConfig, RpeConfig, RpeInterval, TimedPose, absolute_pose_error,
     relative_pose_error,
 };
+use shared::shared;
 use slam_bridge::read_tum;
 
 fn load(name: &str) -> Option<Vec<TimedPose>> {
-    let folder = std::env::var("EXPLORER_DATA")
-        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
-    let path: PathBuf = [folder.as_str(), "data", "trajectories", name]
-        .iter()
-        .collect();
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        println!("skipped: {} is not there", path.display());
-        return None;
-    };
+    let path = shared(&["data", "trajectories", name])?;
+    let text = std::fs::read_to_string(path).unwrap();
     Some(read_tum(text.as_bytes()).unwrap())
 }
 
