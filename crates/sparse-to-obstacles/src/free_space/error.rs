@@ -7,7 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum FreeSpaceError {
     /// A field of the configuration is out of its range.
-    #[error("{name} is {value}: it must be {range}")]
+    #[error("{name} is {value:?}: it must be {range}")]
     OutOfRange {
         /// The field.
         name: &'static str,
@@ -30,7 +30,7 @@ pub enum FreeSpaceError {
     },
     /// A ball that is no ball.
     #[error(
-        "a ball of radius {radius} is not usable: centre and radius must be finite, the radius at least 0"
+        "a ball of radius {radius:?} is not usable: centre and radius must be finite, the radius at least 0"
     )]
     Ball {
         /// The radius given.
@@ -38,7 +38,7 @@ pub enum FreeSpaceError {
     },
     /// The grid would be too large.
     #[error(
-        "an extent of {extent:?} at a resolution of {resolution} needs {voxels:.0} voxels, more than \
+        "an extent of {extent:?} at a resolution of {resolution:?} needs {voxels:.2e} voxels, more than \
          max_voxels = {max_voxels}: use a coarser resolution, a smaller max_range, or remove far points"
     )]
     TooManyVoxels {

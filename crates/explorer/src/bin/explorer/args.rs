@@ -16,7 +16,7 @@ pub(crate) use slam::{
 ///
 /// Without a command it flies the demonstration. Lengths are map units: a monocular map has no scale.
 /// Where a length is not given, it is derived from the map's own size, as if the median distance from
-/// the camera to its points were 2.5 m; --scale says what a map unit really is.
+/// the camera to its points were 1.9 m; --scale says what a map unit really is.
 #[derive(Debug, Parser)]
 #[command(version, about, long_about, name = "explorer")]
 pub(crate) struct Cli {

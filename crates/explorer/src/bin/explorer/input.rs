@@ -10,12 +10,9 @@ use crate::failure::Failure;
 use crate::planning::quantiles;
 use crate::stopwatch::median;
 
-/// Median distance from camera to point that a map without scale is taken to have, metres.
-const ASSUMED_MEDIAN_RANGE_M: f64 = 2.5;
-
-/// The same for lengths that keep a body off obstacles: the middle of three maps of known scale (desk 1.4,
-/// kitchen 1.9, hall 2.2). Too long a guess would make the body too small.
-const CAUTIOUS_MEDIAN_RANGE_M: f64 = 1.9;
+/// Median distance from camera to point that a map without scale is taken to have, metres: the middle of three
+/// maps of known scale (desk 1.4, kitchen 1.9, hall 2.2). Too long a guess would make the body too small.
+const ASSUMED_MEDIAN_RANGE_M: f64 = 1.9;
 
 /// A map with its points as plain coordinates.
 #[derive(Debug)]
@@ -63,19 +60,11 @@ impl LoadedMap {
         }
     }
 
-    /// Map units for a metre: by the scale, else as if the median range were 2.5 m.
+    /// Map units for a metre: by the scale, else as if the median range were 1.9 m.
     pub(crate) fn units_per_meter(&self, position: Option<Vector>) -> f64 {
         match self.map.scale.meters_per_unit() {
             Some(meters) => 1.0 / meters,
             None => self.median_range(position) / ASSUMED_MEDIAN_RANGE_M,
-        }
-    }
-
-    /// Map units for a metre of a body that must fit.
-    pub(crate) fn cautious_units_per_meter(&self, position: Option<Vector>) -> f64 {
-        match self.map.scale.meters_per_unit() {
-            Some(meters) => 1.0 / meters,
-            None => self.median_range(position) / CAUTIOUS_MEDIAN_RANGE_M,
         }
     }
 

@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Obstacles, output: &Output) -> Result<(), Failure>
     let progress = Progress::begin("reading the map");
     let loaded = input::load(&arguments.input)?;
     progress.step("building obstacles");
-    let units = loaded.cautious_units_per_meter(None);
+    let units = loaded.units_per_meter(None);
     let built = measured_surroundings(&loaded, arguments.clusters, units, output.seed)?;
     let radius = arguments.radius.unwrap_or(RADIUS_M * units);
     let places = built.places(radius);
@@ -83,8 +83,9 @@ pub(crate) fn report(built: &Surroundings, proven_free_voxels: usize) -> Obstacl
 pub(crate) fn text(report: &ObstaclesReport) -> String {
     let free = match report.resolution {
         Some(edge) => format!(
-            "{} voxels of {edge:.3} map units proven free for the body",
-            report.proven_free_voxels
+            "{} voxels of {} map units proven free for the body",
+            report.proven_free_voxels,
+            length(edge)
         ),
         None => "no observations, so nothing is proven free".to_owned(),
     };
@@ -92,6 +93,15 @@ pub(crate) fn text(report: &ObstaclesReport) -> String {
         "{} obstacles ({} degenerate), {free}, in {:.3} s",
         report.obstacles, report.degenerate, report.seconds
     )
+}
+
+/// A length in map units, which may be worth anything: three digits after the point where that says something.
+fn length(units: f64) -> String {
+    if (1e-2..1e6).contains(&units) {
+        format!("{units:.3}")
+    } else {
+        format!("{units:.2e}")
+    }
 }
 
 /// Free space, hulls and points from above.
@@ -128,4 +138,21 @@ fn figure(
         axes: view.names(),
         layers: layers(&view, &loaded.points, built),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::length;
+
+    #[test]
+    fn lengths_of_any_size_are_short() {
+        for (units, text) in [
+            (0.08, "0.080"),
+            (12.5, "12.500"),
+            (8e298, "8.00e298"),
+            (8e-302, "8.00e-302"),
+        ] {
+            assert_eq!(length(units), text);
+        }
+    }
 }

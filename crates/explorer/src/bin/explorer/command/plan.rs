@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Plan, output: &Output) -> Result<(), Failure> {
     progress.step("removing outliers");
     let cleaned = clean(&loaded, CleanMethod::Submodular, None, 1)?;
     progress.step("building obstacles");
-    let units = loaded.cautious_units_per_meter(Some(arguments.from));
+    let units = loaded.units_per_meter(Some(arguments.from));
     let kept = &cleaned.kept_indices;
     let mut built = surroundings(&loaded, kept, arguments.clusters, units, output.seed)?;
     progress.step("planning");
