@@ -32,6 +32,10 @@ const SPARE_SHARE: f64 = 0.8;
 /// Keyframes look the same way that are this near, metres, and whose axes have this cosine.
 const SAME_VIEW: (f64, f64) = (0.2, 0.94);
 
+/// Largest ratio of the depths of neighbouring points between which the space counts as seen through: what the missions were
+/// measured with. The library's default is smaller.
+const MAX_DEPTH_RATIO: f64 = 1.5;
+
 /// Halvings when a clearance is searched.
 const CLEARANCE_BITS: u32 = 5;
 
@@ -363,6 +367,7 @@ fn free_space_config(meters_per_unit: f64, config: &MissionConfig) -> FreeSpaceC
         resolution: config.perception.voxel_m,
         patch_half_angle: config.perception.patch_half_angle,
         max_triangle_angle: config.perception.max_triangle_angle,
+        max_depth_ratio: MAX_DEPTH_RATIO,
         // The hulls keep the body clear of points; asking for more here would close doorways.
         clearance: config.drone_radius_m,
         ..FreeSpaceConfig::default()

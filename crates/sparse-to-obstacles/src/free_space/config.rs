@@ -35,7 +35,8 @@ pub struct FreeSpaceConfig {
     /// which 0.1 % is not free.
     pub max_triangle_angle: f64,
     /// Largest ratio of the depths of such points: a jump is the edge of something. At least 1. Default
-    /// 1.5.
+    /// 1.25: at 1.5 a triangle from the last points of a wall to what lies behind its end took the end for seen
+    /// through, and a simulated path crossed the wall there.
     pub max_depth_ratio: f64,
     /// Log-odds that a ray's end adds to its voxel for being occupied. At least 0. Default 0.85, as OctoMap
     /// (probability 0.7).
@@ -66,7 +67,7 @@ impl Default for FreeSpaceConfig {
             clearance: 0.2,
             patch_half_angle: 15.0 / 920.0,
             max_triangle_angle: 0.1,
-            max_depth_ratio: 1.5,
+            max_depth_ratio: 1.25,
             hit_log_odds: 0.85,
             miss_log_odds: 0.4,
             free_log_odds: 0.0,

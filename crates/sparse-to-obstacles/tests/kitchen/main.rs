@@ -128,6 +128,7 @@ fn without_contradicted_points_there_is_more_room() {
     let (wrong, flyable) = measure(&FreeSpaceConfig {
         clearance: 0.22,
         max_triangle_angle: 0.21,
+        max_depth_ratio: 1.5,
         ..base
     });
     assert!(wrong * 2_000 <= surface.len(), "{wrong} open");
