@@ -1,6 +1,6 @@
 //! Every constant of the search, with unit, range and source.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
+use std::f64::consts::FRAC_PI_2;
 
 use crate::error::ExitError;
 
@@ -59,23 +59,16 @@ pub struct RangeAware {
     pub window: f64,
     /// Width of the piece of wall beside an edge that stands for the wall, radians; 8 degrees.
     pub side: f64,
-    /// Widest opening that is looked for by its range, radians; 60 degrees.
-    pub widest: f64,
-    /// Smallest ratio of a seen range to the wall that a convex room would have there (the line between
-    /// the jambs or the walls beside them, continued) for it to lie beyond; above 1. Depth noise of far
-    /// walls is some percent.
-    pub jump: f64,
-    /// Smallest depth behind the line between the jambs, in units of their distance. A room's corner
-    /// has at most ½.
-    pub min_depth: f64,
-    /// The same as a share of the median range: less is a niche.
-    pub min_relative_depth: f64,
-    /// Votes behind the wall, at least; a bin has a vote per point and up to four.
-    pub min_points_beyond: usize,
-    /// Smallest share of the votes in the sector that lie behind the wall, in `[0, 1]`.
-    pub min_share_beyond: f64,
-    /// Smallest ratio of the range seen in the sector to the median of its surroundings (±50 degrees).
-    pub min_contrast: f64,
+    /// Standard deviation of an inverse range in units of the inverse median range: a share of the inverse range, and a
+    /// constant, both 0 or more. Depths from parallax: 0.006 and 0.02 (a pixel or two at a base line of a tenth of the range).
+    pub noise: [f64; 2],
+    /// Straight walls that are looked for, at most; 28.
+    pub max_walls: usize,
+    /// Bins that a wall shows in, at least; 4.
+    pub min_wall: usize,
+    /// Nearer than this to an unseen sector no opening is judged, radians in `[0, π/2]`; 20 degrees. Half an opening at
+    /// the border of a scan looks like anything.
+    pub margin: f64,
     /// Smallest probability of an exit ([`crate::ScoreParts`]), in `[0, 1]`. Less finds more doors and more that
     /// are none.
     pub min_probability: f64,
@@ -154,14 +147,11 @@ impl Default for RangeAware {
         Self {
             window: 5f64.to_radians(),
             side: 8f64.to_radians(),
-            widest: FRAC_PI_3,
-            jump: 1.15,
-            min_depth: 0.4,
-            min_relative_depth: 0.15,
-            min_points_beyond: 10,
-            min_share_beyond: 0.4,
-            min_contrast: 1.3,
-            min_probability: 0.6,
+            noise: [0.006, 0.02],
+            max_walls: 28,
+            min_wall: 4,
+            margin: 20f64.to_radians(),
+            min_probability: 0.75,
             min_relative_width: 0.15,
             max_relative_width: 2.0,
             min_expected: 8.0,
@@ -239,7 +229,7 @@ impl ExitConfig {
 
 impl RangeAware {
     fn validate(&self) -> Result<(), ExitError> {
-        use std::f64::consts::{FRAC_PI_4, PI, TAU};
+        use std::f64::consts::{FRAC_PI_4, TAU};
         within("window", self.window, 0.0, FRAC_PI_4, "[0, π/4] rad")?;
         let fields = [
             (
@@ -249,31 +239,12 @@ impl RangeAware {
                 FRAC_PI_4,
                 "(0, π/4] rad",
             ),
-            (
-                "widest",
-                self.widest,
-                f64::MIN_POSITIVE,
-                0.9 * PI,
-                "(0, 0.9π] rad",
-            ),
-            ("jump", self.jump, 1.0, f64::MAX, "[1, ∞)"),
-            ("min_depth", self.min_depth, 0.0, f64::MAX, "[0, ∞) widths"),
-            (
-                "min_relative_depth",
-                self.min_relative_depth,
-                0.0,
-                f64::MAX,
-                "[0, ∞)",
-            ),
-            ("min_contrast", self.min_contrast, 0.0, f64::MAX, "[0, ∞)"),
+            ("noise", self.noise[0], 0.0, 1.0, "[0, 1]"),
+            ("noise", self.noise[1], f64::MIN_POSITIVE, 1.0, "(0, 1]"),
+            ("max_walls", self.max_walls as f64, 0.0, 1e3, "0..=1000"),
+            ("min_wall", self.min_wall as f64, 1.0, 1e9, "1.. bins"),
+            ("margin", self.margin, 0.0, FRAC_PI_2, "[0, π/2] rad"),
             ("min_probability", self.min_probability, 0.0, 1.0, "[0, 1]"),
-            (
-                "min_share_beyond",
-                self.min_share_beyond,
-                0.0,
-                1.0,
-                "[0, 1]",
-            ),
             (
                 "min_relative_width",
                 self.min_relative_width,
@@ -352,7 +323,7 @@ mod tests {
             })
         ));
         let rule = RangeAware {
-            jump: 0.9,
+            margin: -0.9,
             ..Default::default()
         };
         let config = ExitConfig {
@@ -361,7 +332,10 @@ mod tests {
         };
         assert!(matches!(
             config.validate(),
-            Err(ExitError::Config { field: "jump", .. })
+            Err(ExitError::Config {
+                field: "margin",
+                ..
+            })
         ));
         let config = ExitConfig {
             band: HeightBand::Absolute { from: 1.0, to: 0.0 },

@@ -25,8 +25,8 @@ pub struct Exit {
     pub range: f64,
     /// What gave it away.
     pub kind: ExitKind,
-    /// Rank in `[0, 1]`, higher is better. Range-aware rule: [`ScoreParts::probability`] times how much farther
-    /// one sees there than around. Algorithm 2: the share of the circle.
+    /// Rank in `[0, 1]`, higher is better. Range-aware rule: [`ScoreParts::probability`], of gaps a third of it.
+    /// Algorithm 2: the share of the circle.
     pub score: f64,
     /// Where the score comes from.
     pub parts: ScoreParts,

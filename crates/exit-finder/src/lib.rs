@@ -27,6 +27,6 @@ pub use plane::{AffinePlane, BASIS_TOLERANCE, MIN_SPREAD_RATIO};
 pub use plane_fit::PlaneFit;
 pub use points::PointLike;
 pub use profile::{BinStats, LiveProfile, PointCounts, RangeProfile, Strip};
-pub use rule::{ScoreParts, exits_of_profile};
+pub use rule::{CUE_NAMES, CUES, Opening, ScoreParts, candidates_of_profile, exits_of_profile};
 pub use sector::Sector;
 pub use view::{ExitView, Gaze};

@@ -91,6 +91,7 @@ impl AffinePlane {
     }
 
     /// Plane coordinates of `p`: `Aᵀ (p − v)`.
+    #[inline]
     pub fn project(&self, p: [f64; 3]) -> [f64; 2] {
         let d = sub(p, self.origin);
         [dot(self.axes[0], d), dot(self.axes[1], d)]
@@ -107,6 +108,7 @@ impl AffinePlane {
     }
 
     /// Signed distance of `p` from the plane along the normal.
+    #[inline]
     pub fn height(&self, p: [f64; 3]) -> f64 {
         dot(self.normal, sub(p, self.origin))
     }

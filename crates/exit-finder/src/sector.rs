@@ -39,6 +39,11 @@ impl Run {
         (self.start..end.min(n)).chain(0..end.saturating_sub(n))
     }
 
+    /// Whether all its bins belong to another run of a circle of `n`.
+    pub(crate) fn is_within(self, other: Self, n: usize) -> bool {
+        (self.start + n - other.start) % n + self.len <= other.len
+    }
+
     pub(crate) fn sector(self, n: usize) -> Sector {
         let bin = TAU / n as f64;
         Sector {

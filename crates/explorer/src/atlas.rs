@@ -195,7 +195,7 @@ mod tests {
         shrink: 0.5,
     };
 
-    /// A round room of radius 3 with a door of 20 degrees towards each bearing, behind which a wall is seen at range 8.
+    /// A room of 6 by 6 with a door of 20 degrees towards each bearing, behind which a wall is seen at range 8.
     fn report(doors_deg: &[f64]) -> ExitReport {
         let points: Vec<[f64; 3]> = (0..720)
             .map(|i| (f64::from(i) * 0.5 + 0.25).to_radians())
@@ -205,7 +205,7 @@ mod tests {
                 let range = if doors_deg.iter().any(in_door) {
                     8.0
                 } else {
-                    3.0
+                    3.0 / bearing.cos().abs().max(bearing.sin().abs())
                 };
                 [range * bearing.cos(), range * bearing.sin(), 0.0]
             })

@@ -39,12 +39,11 @@ impl RangeProfile {
             sight.extend(eye.look(point.into(), &edges, &mut counts));
         }
         let band = Band::of(config.band, &sight, config.bins);
-        let mut seen = in_band(&sight, &band);
+        let (mut seen, mut ranges) = in_band(&sight, &band);
         counts.used = seen.len();
         counts.outside_band = sight.len() - seen.len();
         check_support(&counts, config)?;
 
-        let mut ranges: Vec<u64> = seen.iter().map(|p| p.range.to_bits()).collect();
         let mean_range = mean(&ranges);
         let median_range = median_of_bits(&mut ranges).unwrap_or(f64::INFINITY);
         let radius = match config.rule {
@@ -86,15 +85,18 @@ struct Seen {
     range: f64,
 }
 
-fn in_band(sight: &[Polar], band: &Band) -> Vec<Seen> {
+/// The points in the band, and the bits of their ranges.
+fn in_band(sight: &[Polar], band: &Band) -> (Vec<Seen>, Vec<u64>) {
     let mut seen = Vec::with_capacity(sight.len());
+    let mut ranges = Vec::with_capacity(sight.len());
     for p in sight {
         if let Some(level) = band.level_of(p) {
             let (bin, range) = (p.bin, p.range);
             seen.push(Seen { bin, level, range });
+            ranges.push(range.to_bits());
         }
     }
-    seen
+    (seen, ranges)
 }
 
 pub(crate) fn check_support(counts: &PointCounts, config: &ExitConfig) -> Result<(), ExitError> {

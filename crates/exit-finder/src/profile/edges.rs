@@ -46,12 +46,14 @@ impl Edges {
 }
 
 /// Whether a direction lies less than half a turn clockwise of an edge.
+#[inline]
 fn is_before(direction: [f64; 2], edge: [f64; 2]) -> bool {
     edge[0] * direction[1] - edge[1] * direction[0] < 0.0
 }
 
 /// Bearing in `[0, 2π]` with an error below 2.1·10⁻⁸: Abramowitz and Stegun, 4.4.49, evaluated in pairs, and
 /// without branches, which random directions would mispredict.
+#[inline]
 fn rough_bearing([x, y]: [f64; 2]) -> f64 {
     let (a, b) = (x.abs(), y.abs());
     let t = a.min(b) / a.max(b);

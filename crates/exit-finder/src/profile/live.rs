@@ -39,6 +39,9 @@ pub struct LiveProfile {
     stats: Vec<BinStats>,
     median: RunningMedian,
     counts: PointCounts,
+    /// Points whose statistics were taken again, to prove what an update costs.
+    #[cfg(test)]
+    visited: usize,
 }
 
 impl LiveProfile {
@@ -72,6 +75,8 @@ impl LiveProfile {
             stats: vec![BinStats::EMPTY; config.bins],
             median: RunningMedian::default(),
             counts: PointCounts::default(),
+            #[cfg(test)]
+            visited: 0,
         };
         for &point in points {
             let place = live.place(point);
@@ -200,6 +205,10 @@ impl LiveProfile {
     }
 
     fn refresh(&mut self, bin: usize) {
+        #[cfg(test)]
+        {
+            self.visited += self.seen[bin].len();
+        }
         self.stats[bin] = BinStats::of_sorted(&self.seen[bin], self.config.quantile);
     }
 }
@@ -257,5 +266,22 @@ mod tests {
         assert_eq!(updated.counts, rebuilt.counts);
         assert_eq!(updated.median_range, rebuilt.median_range);
         assert!((updated.mean_range - rebuilt.mean_range).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_update_visits_only_the_bins_it_changes() {
+        let plane = AffinePlane::from_up([0.0, 0.0, 1.0], [0.0; 3]).unwrap();
+        let points = cloud(20_000);
+        let mut live = LiveProfile::new(&points, [0.0; 3], &plane, &ExitConfig::default()).unwrap();
+        assert_eq!(live.visited, live.counts.used);
+        let bins = live.stats.clone();
+        let fullest = bins.iter().map(|stats| stats.count).max().unwrap();
+        for (k, &point) in points.iter().enumerate().step_by(997) {
+            live.visited = 0;
+            assert!(live.relocate(point, points[(k + 1) % points.len()]));
+            assert!(live.visited <= 2 * fullest + 1 && live.visited < points.len() / 20);
+        }
+        let changed = bins.iter().zip(&live.stats).filter(|(a, b)| a != b).count();
+        assert!(changed > 0 && changed <= 2 * points.len().div_ceil(997));
     }
 }

@@ -21,6 +21,11 @@ impl Line {
         })
     }
 
+    /// The line whose inverse range in direction d is a·d₀ + b·d₁.
+    pub(crate) fn with_inverse(a: f64, b: f64) -> Self {
+        Self { a, b }
+    }
+
     /// Inverse range in a direction; zero or less where the line is never met.
     pub(crate) fn inverse_range(&self, direction: [f64; 2]) -> f64 {
         self.a * direction[0] + self.b * direction[1]
@@ -29,11 +34,6 @@ impl Line {
     /// Distance from the agent.
     pub(crate) fn distance(&self) -> f64 {
         1.0 / self.a.hypot(self.b)
-    }
-
-    /// How far behind the line a point lies, in units of [`Self::distance`]; negative before it.
-    pub(crate) fn share_behind(&self, p: [f64; 2]) -> f64 {
-        self.inverse_range(p) - 1.0
     }
 }
 
@@ -50,7 +50,6 @@ mod tests {
         }
         assert!(line.inverse_range([0.0, -1.0]) < 0.0);
         assert!((line.distance() - 2.0).abs() < 1e-12);
-        assert!((line.share_behind([7.0, 5.0]) - 1.5).abs() < 1e-12);
         assert_eq!(Line::through([1.0, 1.0], [2.0, 2.0]), None);
     }
 }

@@ -1,16 +1,23 @@
 //! The rules that tell an opening from a wall, on the finished profile.
 
 mod contour;
-mod evidence;
-pub use evidence::ScoreParts;
+mod cues;
+mod forest;
 mod line;
-pub(crate) use line::Line;
-mod matched;
+mod openings;
 mod paper;
 mod range_aware;
 mod ranking;
+mod score;
+mod sight;
 mod smoothing;
 mod unseen;
+mod wall;
+
+pub use cues::{CUE_NAMES, CUES};
+pub(crate) use line::Line;
+pub use openings::Opening;
+pub use score::ScoreParts;
 
 use crate::config::{ExitConfig, Rule};
 use crate::error::ExitError;
@@ -37,4 +44,21 @@ pub fn exits_of_profile(
     };
     ranking::rank(&mut report, view);
     Ok(report)
+}
+
+/// All stretches of walls that may be openings, with their cues and whatever their probability: what the range-aware rule
+/// chooses from, for a look at a decision or for fitting the score to other rooms. Empty for other rules.
+///
+/// # Errors
+/// [`ExitError::Config`].
+pub fn candidates_of_profile(
+    profile: &RangeProfile,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> Result<Vec<Opening>, ExitError> {
+    config.validate()?;
+    Ok(match &config.rule {
+        Rule::Paper(_) => Vec::new(),
+        Rule::RangeAware(rule) => range_aware::candidates(profile, rule, view, config),
+    })
 }

@@ -1,16 +1,17 @@
-//! The default rule: openings are runs that are empty or whose range jumps above their surroundings.
+//! The default rule: openings are gaps in walls through which points are seen, and runs that are empty.
 //!
-//! 1. Smooth the profile into a contour of the room (`contour`).
-//! 2. Flag the bins that were never looked at (`unseen`).
-//! 3. Range jumps: sectors with points deep behind the line between their edges, and behind the walls
-//!    beside them continued (`matched`).
+//! 1. Flag the bins that were never looked at (`unseen`).
+//! 2. Find the straight walls (`wall`) and, in each, the stretches through which points are seen (`openings`).
+//! 3. Judge each by what was seen in it and beside it (`cues`, `score`); the likeliest that do not overlap are exits.
 //! 4. Gaps: empty runs where walls are so evenly textured that a wall would have shown.
 //! 5. Turn down what is too narrow.
 
 use super::contour::Contour;
-use super::evidence::ScoreParts;
-use super::matched;
+use super::openings::{Opening, openings};
+use super::score::ScoreParts;
+use super::sight::Sight;
 use super::unseen::{points_elsewhere, unseen_bins};
+use super::wall::walls;
 use crate::config::{ExitConfig, RangeAware};
 use crate::exit::{Exit, ExitKind, ExitReport, Rejected, Rejection};
 use crate::profile::RangeProfile;
@@ -26,7 +27,9 @@ pub(super) fn exits(
 ) -> ExitReport {
     let scene = Scene::new(&profile, rule, view, config);
     let (mut exits, mut rejected) = (Vec::new(), Vec::new());
-    for (run, verdict) in scene.jumps().into_iter().chain(scene.gaps()) {
+    let jumps = scene.jumps();
+    let gaps = scene.gaps(&jumps);
+    for (run, verdict) in jumps.into_iter().chain(gaps) {
         match verdict {
             Ok(exit) => exits.push(exit),
             Err(reason) => rejected.push(Rejected {
@@ -47,6 +50,18 @@ pub(super) fn exits(
     }
 }
 
+/// All candidates of a profile, whatever their probability.
+pub(super) fn candidates(
+    profile: &RangeProfile,
+    rule: &RangeAware,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> Vec<Opening> {
+    Scene::new(profile, rule, view, config).openings()
+}
+
+/// A candidate with its parts and its probability.
+type Judged = (Opening, ScoreParts, f64);
 type Verdict = (Run, Result<Exit, Rejection>);
 
 /// The profile with what is known about each bin.
@@ -89,25 +104,87 @@ impl<'a> Scene<'a> {
         self.contour.n()
     }
 
-    fn jumps(&self) -> Vec<Verdict> {
-        let found = matched::matches(
-            self.profile,
-            &self.contour,
-            &self.unseen,
-            self.rule,
-            self.needed,
-        );
-        let judge = |found: matched::Match| {
-            let exit = self.exit_of(found.run, ExitKind::RangeJump, found.evidence.parts());
-            (found.run, self.wide_enough(exit, found.width))
-        };
-        found.into_iter().map(judge).collect()
+    fn openings(&self) -> Vec<Opening> {
+        let rule = self.rule;
+        let sight = Sight::of(self.profile, rule);
+        let walls = walls(&sight, rule.max_walls, rule.min_wall);
+        let most = rule.max_relative_width * self.profile.median_range;
+        let mut found = openings(self.profile, &sight, &walls, &self.unseen, rule);
+        found.retain(|opening| opening.width <= most);
+        found
     }
 
-    fn gaps(&self) -> Vec<Verdict> {
-        let empty: Vec<bool> = (0..self.n())
+    /// The likeliest openings that do not overlap. Those narrower than needed come last and only where no wider one lies.
+    fn jumps(&self) -> Vec<Verdict> {
+        let judged = self.openings().into_iter().map(|opening| {
+            let parts = opening.parts();
+            (opening, parts, parts.probability())
+        });
+        let mut likely: Vec<Judged> = judged
+            .filter(|(_, _, probability)| *probability >= self.rule.min_probability)
+            .collect();
+        likely.sort_by(|(a, _, p), (b, _, q)| {
+            (b.width >= self.needed)
+                .cmp(&(a.width >= self.needed))
+                .then(q.total_cmp(p))
+                .then(a.run.start.cmp(&b.run.start))
+        });
+        let n = self.n();
+        let mut taken = vec![false; n];
+        let mut verdicts = Vec::new();
+        for best in &likely {
+            if best.0.run.bins(n).any(|bin| taken[bin]) {
+                continue;
+            }
+            let widest = self.before(best, &likely, &taken);
+            let (opening, parts, _) = self.within(widest, &likely);
+            let widest = &widest.0;
+            widest.run.bins(n).for_each(|bin| taken[bin] = true);
+            let exit = self.exit_of(
+                opening.run,
+                opening.jamb_ranges,
+                ExitKind::RangeJump,
+                *parts,
+            );
+            verdicts.push((opening.run, self.wide_enough(exit)));
+        }
+        verdicts
+    }
+
+    /// The opening through which a likely one is seen, if it is one itself: it is the one to be entered first.
+    fn before<'b>(&self, best: &'b Judged, likely: &'b [Judged], taken: &[bool]) -> &'b Judged {
+        let n = self.n();
+        let holds = |other: &&Judged| {
+            best.0.run.is_within(other.0.run, n)
+                && SAME_RANGE * nearer_jamb(&other.0) < nearer_jamb(&best.0)
+                && other.0.width >= self.needed
+                && other.0.run.bins(n).all(|bin| !taken[bin])
+        };
+        likely.iter().find(holds).unwrap_or(best)
+    }
+
+    /// A wider sector holds a piece of wall as well: of about equally likely ones in the same wall, the narrowest.
+    fn within<'b>(&self, widest: &'b Judged, likely: &'b [Judged]) -> &'b Judged {
+        let n = self.n();
+        let equal = likely.iter().filter(|(other, _, p)| {
+            other.run.is_within(widest.0.run, n)
+                && nearer_jamb(other) <= SAME_RANGE * nearer_jamb(&widest.0)
+                && (other.width >= self.needed) == (widest.0.width >= self.needed)
+                && odds(*p) * EQUAL >= odds(widest.2)
+        });
+        equal
+            .min_by_key(|(other, _, _)| other.run.len)
+            .unwrap_or(widest)
+    }
+
+    /// Empty runs outside the openings found already.
+    fn gaps(&self, jumps: &[Verdict]) -> Vec<Verdict> {
+        let mut empty: Vec<bool> = (0..self.n())
             .map(|bin| self.contour.ranges[bin].is_none() && !self.unseen[bin])
             .collect();
+        for (run, _) in jumps {
+            run.bins(self.n()).for_each(|bin| empty[bin] = false);
+        }
         let runs: Vec<Run> = circular_runs(&empty)
             .into_iter()
             .map(|run| self.widened(run))
@@ -138,36 +215,39 @@ impl<'a> Scene<'a> {
         if expected < needed {
             return Err(Rejection::Unsupported { expected, needed });
         }
-        let [a, b] = self.jambs(run);
+        let usual = self.profile.median_range;
+        let ranges = self
+            .contour
+            .jamb_ranges(run.start, run.len)
+            .unwrap_or([usual, usual]);
+        let [a, b] = self.jambs(run, ranges);
         let width = distance(a, b);
         let support = 1.0 - (-expected / 8.0).exp();
         let passable = width / (width + 0.5 * self.needed).max(f64::MIN_POSITIVE);
         let parts = ScoreParts::of_support(GAP * support * passable);
-        let exit = self.exit_of(run, ExitKind::Empty, parts);
-        self.wide_enough(exit, width)
+        self.wide_enough(self.exit_of(run, ranges, ExitKind::Empty, parts))
     }
 
-    fn wide_enough(&self, exit: Exit, width: f64) -> Result<Exit, Rejection> {
-        if width < self.needed {
+    fn wide_enough(&self, exit: Exit) -> Result<Exit, Rejection> {
+        if exit.width < self.needed {
             return Err(Rejection::TooNarrow {
-                width,
+                width: exit.width,
                 needed: self.needed,
             });
         }
         Ok(exit)
     }
 
-    fn exit_of(&self, run: Run, kind: ExitKind, parts: ScoreParts) -> Exit {
+    fn exit_of(&self, run: Run, ranges: [f64; 2], kind: ExitKind, parts: ScoreParts) -> Exit {
         let profile = self.profile;
         let sector = run.sector(self.n());
-        let jambs = self.jambs(run);
+        let jambs = self.jambs(run, ranges);
         let bearing_rad = sector.middle_rad();
         let score = match kind {
-            ExitKind::RangeJump => parts.score(),
+            ExitKind::RangeJump => parts.probability(),
             ExitKind::Empty => GAP_RANK * parts.probability(),
         };
-        let [before, after] = jambs.map(|jamb| distance(jamb, profile.agent));
-        let range = before.min(after) * (1.0 + self.rule.beyond);
+        let range = ranges[0].min(ranges[1]) * (1.0 + self.rule.beyond);
         Exit {
             direction: profile.direction(bearing_rad),
             bearing_rad,
@@ -183,20 +263,27 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The wall just outside each edge, at the edge; the median range where none was seen.
-    fn jambs(&self, run: Run) -> [[f64; 3]; 2] {
+    /// The two ends of a run at these ranges.
+    fn jambs(&self, run: Run, ranges: [f64; 2]) -> [[f64; 3]; 2] {
         let sector = run.sector(self.n());
-        let usual = self.profile.median_range;
-        let ranges = self
-            .contour
-            .jamb_ranges(run.start, run.len)
-            .unwrap_or([usual, usual]);
         let ends = [sector.start_rad, sector.start_rad + sector.width_rad];
         [0, 1].map(|k| self.profile.at(ends[k], ranges[k]))
     }
 }
 
+fn nearer_jamb(opening: &Opening) -> f64 {
+    opening.jamb_ranges[0].min(opening.jamb_ranges[1])
+}
+
+fn odds(probability: f64) -> f64 {
+    probability / (1.0 - probability).max(f64::MIN_POSITIVE)
+}
+
+/// Odds that differ by less than this factor are about equal.
+const EQUAL: f64 = std::f64::consts::E;
+/// Jambs farther by more than this factor belong to another wall.
+const SAME_RANGE: f64 = 1.5;
 /// Probability of the best gap: an empty run says that the wall is missing, not how far one could see.
 const GAP: f64 = 0.6;
-/// Rank of a gap: as if one saw half as far again as around.
+/// Rank of a gap against openings that one sees through.
 const GAP_RANK: f64 = 1.0 / 3.0;

@@ -51,9 +51,9 @@ pub fn corrupted(
     cloud
 }
 
-/// Keeps points with at least four neighbours within four median nearest-neighbour distances, where
+/// Indices of the points with at least four neighbours within four median nearest-neighbour distances, where
 /// distances are divided by the range from the agent: a sparse map thins out with range.
-pub fn cleaned(points: &[[f64; 3]], agent: [f64; 3]) -> Vec<[f64; 3]> {
+pub fn cleaned(points: &[[f64; 3]], agent: [f64; 3]) -> Vec<usize> {
     let squared = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>();
     // Bearing, elevation and log range: neighbours in these coordinates are neighbours relative to range.
     let relative: Vec<[f64; 3]> = points
@@ -93,10 +93,7 @@ pub fn cleaned(points: &[[f64; 3]], agent: [f64; 3]) -> Vec<[f64; 3]> {
         near.filter(|&&i| squared(p, &relative[i]) <= reach * reach)
             .count()
     };
-    points
-        .iter()
-        .zip(&relative)
-        .filter(|(_, q)| neighbours(q) > 3)
-        .map(|(p, _)| *p)
+    (0..points.len())
+        .filter(|&i| neighbours(&relative[i]) > 3)
         .collect()
 }

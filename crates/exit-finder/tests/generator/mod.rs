@@ -1,6 +1,7 @@
 //! Seeded rooms with doors, seen by a turning camera: plans, features, outliers and the truth.
 #![allow(
     dead_code,
+    unused_imports,
     unreachable_pub,
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -19,14 +20,46 @@ use rand_pcg::Pcg64;
 
 /// One scan of one room, in the map's frame (z up, random yaw, random scale).
 pub struct Scan {
-    /// Map points without outliers.
+    /// Map points.
     pub points: Vec<[f64; 3]>,
+    /// So many of them, the first ones, are genuine; outliers follow.
+    pub genuine: usize,
     /// The agent.
     pub agent: [f64; 3],
     /// The true openings as (start bearing, angular width), radians, in the map's frame.
     pub openings: Vec<Opening>,
     /// Map units per metre.
     pub scale: f64,
+    /// How far the map is turned against the plan, radians.
+    pub yaw: f64,
+    /// Length and width of the room, metres; it lies at `[0, length] × [0, width]` of the plan.
+    pub size: [f64; 2],
+    /// The agent in the plan, metres.
+    pub place: [f64; 2],
+}
+
+impl Scan {
+    /// Genuine points of the map as it is now at least half a metre behind the wall, seen through an opening.
+    pub fn evidence(&self, opening: &Opening) -> usize {
+        let (sin, cos) = self.yaw.sin_cos();
+        let behind = |p: &&[f64; 3]| {
+            let d = [p[0] - self.agent[0], p[1] - self.agent[1]];
+            let turned = [cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]];
+            let off = (d[1].atan2(d[0]) - opening.start).rem_euclid(std::f64::consts::TAU);
+            let outside = |i: usize| {
+                let x = self.place[i] + turned[i] / self.scale;
+                (-x).max(x - self.size[i])
+            };
+            off < opening.width && outside(0).max(outside(1)) > 0.5
+        };
+        self.points[..self.genuine].iter().filter(behind).count()
+    }
+
+    /// Keeps the points with these ascending indices.
+    pub fn keep(&mut self, kept: &[usize]) {
+        self.genuine = kept.partition_point(|&index| index < self.genuine);
+        self.points = kept.iter().map(|&index| self.points[index]).collect();
+    }
 }
 
 /// A true opening as the agent sees it.
@@ -60,9 +93,13 @@ pub fn scan(doors: usize, dark: bool, rng: &mut Pcg64) -> Scan {
     let openings = plan.openings(yaw, &points);
     let agent = to_map([plan.agent[0], plan.agent[1], camera::HEIGHT]);
     Scan {
+        genuine: points.len(),
         points: points.into_iter().map(to_map).collect(),
         agent,
         openings,
         scale,
+        yaw,
+        size: plan.size,
+        place: plan.agent,
     }
 }

@@ -38,7 +38,7 @@ impl Suite {
                 let mut scan = scan(doors, self.dark, &mut rng);
                 scan.points = corrupted(&scan.points, scan.agent, self.outliers, &mut rng);
                 if self.clean {
-                    scan.points = cleaned(&scan.points, scan.agent);
+                    scan.keep(&cleaned(&scan.points, scan.agent));
                 }
                 scan
             })
@@ -60,8 +60,15 @@ pub struct Score {
     /// Of the fair openings those with [`ENOUGH_POINTS`] at least [`ENOUGH_DEPTH`] behind.
     pub seen_found: usize,
     pub seen_missed: usize,
+    /// Of the fair openings those behind which the map, as it is after cleaning, has [`EVIDENT`] genuine points.
+    pub evident_found: usize,
+    pub evident_missed: usize,
+    /// Sum over the right exits of the common part of sector and opening over their union.
+    pub common: f64,
 }
 
+/// Genuine points half a metre behind the wall by which somebody who knows the walls would tell an opening.
+const EVIDENT: usize = 5;
 /// Map points behind an opening that make it evident from the map.
 const ENOUGH_POINTS: usize = 20;
 /// Their mean distance behind the wall, metres: more than furniture is deep.
@@ -81,6 +88,22 @@ impl Score {
         share(self.seen_found, self.seen_missed)
     }
 
+    /// Recall of the openings that somebody who knows the true walls and points could tell.
+    pub fn recall_evident(&self) -> f64 {
+        share(self.evident_found, self.evident_missed)
+    }
+
+    /// How well the sectors of the right exits agree with the openings: common part over union, mean.
+    pub fn agreement(&self) -> f64 {
+        self.common / self.right.max(1) as f64
+    }
+
+    /// The best recall: the share of the fair openings that such an oracle finds.
+    pub fn oracle(&self) -> f64 {
+        let evident = self.evident_found + self.evident_missed;
+        share(evident, self.found + self.missed - evident)
+    }
+
     /// Share of rooms with any exit whose best one is right.
     pub fn best(&self) -> f64 {
         share(self.best_right, self.best_wrong)
@@ -95,7 +118,9 @@ impl Score {
         self.rooms += 1;
         self.silent += usize::from(exits.is_empty());
         for (rank, exit) in exits.iter().enumerate() {
-            let right = scan.openings.iter().any(|opening| hits(exit, opening));
+            let hit = scan.openings.iter().find(|opening| hits(exit, opening));
+            self.common += hit.map_or(0.0, |opening| common(exit, opening));
+            let right = hit.is_some();
             self.right += usize::from(right);
             self.wrong += usize::from(!right);
             if rank == 0 {
@@ -110,6 +135,10 @@ impl Score {
             if opening.behind >= ENOUGH_POINTS && opening.depth >= ENOUGH_DEPTH {
                 self.seen_found += usize::from(found);
                 self.seen_missed += usize::from(!found);
+            }
+            if scan.evidence(opening) >= EVIDENT {
+                self.evident_found += usize::from(found);
+                self.evident_missed += usize::from(!found);
             }
         }
     }
@@ -130,6 +159,14 @@ fn share(part: usize, rest: usize) -> f64 {
 fn hits(exit: &Exit, opening: &Opening) -> bool {
     let spare = 3f64.to_radians();
     (exit.bearing_rad - opening.start + spare).rem_euclid(TAU) < opening.width + 2.0 * spare
+}
+
+/// Common part of an exit's sector and an opening over their union.
+fn common(exit: &Exit, opening: &Opening) -> f64 {
+    let off = (exit.sector.start_rad - opening.start + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
+    let (end, far) = (off + exit.width_rad, opening.width);
+    let both = (end.min(far) - off.max(0.0)).max(0.0);
+    both / (end.max(far) - off.min(0.0))
 }
 
 /// Compares the exits of all scans with the truth. A known scale gives the width a drone needs, 0.6 m.

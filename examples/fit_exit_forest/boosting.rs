@@ -1,0 +1,174 @@
+//! Gradient boosting of small complete trees for a yes-or-no answer (Friedman 2001, with Newton steps as in XGBoost).
+
+use exit_finder::CUES;
+
+const DEPTH: usize = 3;
+const NODES: usize = (1 << DEPTH) - 1;
+const LEAVES: usize = 1 << DEPTH;
+/// Trees, and the share of each Newton step that is taken.
+const TREES: usize = 250;
+const RATE: f64 = 0.1;
+/// Thresholds that are tried for a cue: its quantiles.
+const CELLS: usize = 32;
+/// Pull of the leaves to zero, and the weight that a child needs.
+const PULL: f64 = 2.0;
+const MIN_WEIGHT: f64 = 4.0;
+
+type Cues = [f64; CUES];
+
+/// A complete tree: node k has the children 2k + 1 (cue at most the threshold) and 2k + 2.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tree {
+    pub(crate) cue: [u8; NODES],
+    pub(crate) most: [f32; NODES],
+    pub(crate) leaf: [f32; LEAVES],
+}
+
+pub(crate) struct Forest {
+    bias: f64,
+    pub(crate) trees: Vec<Tree>,
+}
+
+/// Gradient and curvature of the log likelihood.
+#[derive(Debug, Clone, Copy, Default)]
+struct Slope {
+    first: f64,
+    second: f64,
+}
+
+impl Slope {
+    fn add(&mut self, other: Self) {
+        self.first += other.first;
+        self.second += other.second;
+    }
+
+    fn without(self, other: Self) -> Self {
+        Self {
+            first: self.first - other.first,
+            second: self.second - other.second,
+        }
+    }
+
+    fn gain(self) -> f64 {
+        self.first * self.first / (self.second + PULL)
+    }
+}
+
+impl Forest {
+    pub(crate) fn fit(cues: &[Cues], right: &[bool]) -> Self {
+        let thresholds = thresholds(cues);
+        let cells: Vec<[u8; CUES]> = cues
+            .iter()
+            .map(|row| std::array::from_fn(|c| cell(&thresholds[c], row[c])))
+            .collect();
+        let share = right.iter().filter(|&&yes| yes).count() as f64 / right.len() as f64;
+        let bias = (share / (1.0 - share)).ln();
+        let mut odds = vec![bias; cues.len()];
+        let mut trees = Vec::new();
+        for _ in 0..TREES {
+            let slopes: Vec<Slope> = odds.iter().zip(right).map(|(z, y)| slope(*z, *y)).collect();
+            let (tree, leaf_of) = grow(cues, &cells, &slopes, &thresholds);
+            for (z, leaf) in odds.iter_mut().zip(leaf_of) {
+                *z += f64::from(tree.leaf[leaf]);
+            }
+            trees.push(tree);
+        }
+        Self { bias, trees }
+    }
+
+    /// Log odds of a candidate about which no tree was asked.
+    pub(crate) fn base(&self) -> f64 {
+        let mean =
+            |tree: &Tree| tree.leaf.iter().map(|&x| f64::from(x)).sum::<f64>() / LEAVES as f64;
+        self.bias + self.trees.iter().map(mean).sum::<f64>()
+    }
+}
+
+fn slope(odds: f64, right: bool) -> Slope {
+    let p = 1.0 / (1.0 + (-odds).exp());
+    Slope {
+        first: f64::from(u8::from(right)) - p,
+        second: p * (1.0 - p),
+    }
+}
+
+fn thresholds(cues: &[Cues]) -> Vec<Vec<f32>> {
+    let quantiles = |c: usize| {
+        let mut values: Vec<f64> = cues.iter().map(|row| row[c]).collect();
+        values.sort_by(f64::total_cmp);
+        let at = |k: usize| values[k * values.len() / CELLS] as f32;
+        let mut quantiles: Vec<f32> = (1..CELLS).map(at).collect();
+        quantiles.dedup();
+        quantiles
+    };
+    (0..CUES).map(quantiles).collect()
+}
+
+fn cell(thresholds: &[f32], value: f64) -> u8 {
+    thresholds.partition_point(|&t| f64::from(t) < value) as u8
+}
+
+/// One tree, and the leaf that each example falls into.
+fn grow(
+    cues: &[Cues],
+    cells: &[[u8; CUES]],
+    slopes: &[Slope],
+    thresholds: &[Vec<f32>],
+) -> (Tree, Vec<usize>) {
+    let mut tree = Tree {
+        cue: [0; NODES],
+        most: [f32::MAX; NODES],
+        leaf: [0.0; LEAVES],
+    };
+    let mut place = vec![0usize; cues.len()];
+    for level in 0..DEPTH {
+        let first = (1 << level) - 1;
+        let width = 1 << level;
+        let mut sums = vec![[[Slope::default(); CELLS]; CUES]; width];
+        for ((node, row), slope) in place.iter().zip(cells).zip(slopes) {
+            for c in 0..CUES {
+                sums[*node][c][usize::from(row[c])].add(*slope);
+            }
+        }
+        for (node, sums) in sums.iter().enumerate() {
+            if let Some((c, t)) = best_split(sums, thresholds) {
+                tree.cue[first + node] = c as u8;
+                tree.most[first + node] = thresholds[c][t];
+            }
+        }
+        for (node, row) in place.iter_mut().zip(cues) {
+            let k = first + *node;
+            let more = row[usize::from(tree.cue[k])] > f64::from(tree.most[k]);
+            *node = 2 * *node + usize::from(more);
+        }
+    }
+    let mut sums = [Slope::default(); LEAVES];
+    for (leaf, slope) in place.iter().zip(slopes) {
+        sums[*leaf].add(*slope);
+    }
+    // Four digits are printed, and used from here on.
+    let round = |x: f64| ((x * 1e4).round() / 1e4) as f32;
+    tree.leaf = sums.map(|sum| round(RATE * sum.first / (sum.second + PULL)));
+    (tree, place)
+}
+
+/// The cue and the threshold of the largest gain.
+fn best_split(sums: &[[Slope; CELLS]; CUES], thresholds: &[Vec<f32>]) -> Option<(usize, usize)> {
+    let mut all = Slope::default();
+    sums[0].iter().for_each(|sum| all.add(*sum));
+    let mut best = None;
+    let mut most = 1e-6;
+    for (c, cells) in sums.iter().enumerate() {
+        let mut low = Slope::default();
+        for (t, cell) in cells.iter().take(thresholds[c].len()).enumerate() {
+            low.add(*cell);
+            let high = all.without(low);
+            let gain = low.gain() + high.gain() - all.gain();
+            if low.second.min(high.second) >= MIN_WEIGHT && gain > most {
+                most = gain;
+                best = Some((c, t));
+            }
+        }
+    }
+    best
+}
