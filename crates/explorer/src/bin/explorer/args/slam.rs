@@ -7,6 +7,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use edge_slam::camera::{Camera, PinholeCamera, RadialTangential};
 
+use super::positive;
+
 #[derive(Debug, Args)]
 pub(crate) struct Slam {
     /// A folder with rgb.txt (and depth.txt) as the TUM benchmark has it, or with color/ (and depth/).
@@ -139,6 +141,19 @@ pub(crate) struct Evaluate {
     /// Poses up to this many seconds apart are compared.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.01, value_parser = seconds)]
     pub(crate) max_difference: f64,
+    /// A map in the estimate's frame and unit (the folder that `slam` wrote, or a map file): how much of it lies on the surface
+    /// that the sequence's depth images show from the true poses, and how much of that surface it covers.
+    #[arg(long, value_name = "MAP", requires = "sequence")]
+    pub(crate) map: Option<PathBuf>,
+    /// The sequence with the depth images, as `slam` reads it.
+    #[arg(long, value_name = "SEQUENCE", requires = "map")]
+    pub(crate) sequence: Option<PathBuf>,
+    /// How far apart a map point and the surface may be, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 0.05, value_parser = positive)]
+    pub(crate) threshold: f64,
+    /// The depth images' camera, pixels; by default as the sequence says.
+    #[arg(long, value_name = "fx,fy,cx,cy[,k1,k2,p1,p2[,k3]]", allow_hyphen_values = true, value_parser = camera)]
+    pub(crate) camera: Option<Camera>,
 }
 
 /// The freedom of the alignment.

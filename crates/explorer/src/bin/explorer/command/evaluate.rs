@@ -1,4 +1,7 @@
-//! `explorer evaluate`: how far a trajectory is from the true one.
+//! `explorer evaluate`: how far a trajectory, and a map, are from the true ones.
+
+mod map_error;
+mod surface;
 
 use std::fs::File;
 use std::io::BufReader;
@@ -15,6 +18,7 @@ use crate::args::{AlignChoice, Evaluate, Output};
 use crate::failure::Failure;
 use crate::output::deliver;
 use crate::plot::{AxisPair, Figure, Layer, Shape, Track, color, trajectory};
+use map_error::{MapError, MapReport};
 
 /// The command's JSON object: the translation part of the absolute pose error, then everything else.
 #[derive(Debug, Clone, Serialize)]
@@ -36,6 +40,8 @@ struct EvaluateReport {
     /// Drift from one compared pose to the next (evo's default), and over a second.
     rpe_frame: Option<Drift>,
     rpe_second: Option<Drift>,
+    /// With --map.
+    map: Option<MapReport>,
 }
 
 /// Statistics as evo names them.
@@ -92,6 +98,7 @@ pub(crate) fn run(arguments: &Evaluate, output: &Output) -> Result<(), Failure> 
         max_difference: arguments.max_difference,
     };
     let ape = absolute_pose_error(&estimate, &reference, &config).map_err(failure)?;
+    let map = MapError::measure(arguments, &ape.alignment, &reference)?;
     let drift = |interval| drift(&estimate, &reference, interval, &config, &ape);
     let report = EvaluateReport {
         translation: Summary::of(&ape.translation, 1.0),
@@ -107,9 +114,14 @@ pub(crate) fn run(arguments: &Evaluate, output: &Output) -> Result<(), Failure> 
         frobenius: Summary::of(&ape.frobenius, 1.0),
         rpe_frame: drift(RpeInterval::Frames(1)),
         rpe_second: drift(RpeInterval::Seconds(1.0)),
+        map: map.as_ref().map(|map| map.report.clone()),
     };
+    let tracks = tracks(&ape, &estimate, &reference);
     deliver(output, &report, &text(&report), || {
-        Ok(figure(&report, &ape, &estimate, &reference))
+        Ok(match &map {
+            Some(map) => map.figure(&tracks),
+            None => figure(&report, &ape, &tracks),
+        })
     })
 }
 
@@ -185,23 +197,21 @@ fn text(report: &EvaluateReport) -> String {
             ));
         }
     }
+    if let Some(map) = &report.map {
+        text.push('\n');
+        text.push_str(&map.text());
+    }
     text
 }
 
-/// Both trajectories, and a stroke from each compared pose to where it should be.
-fn figure(
-    report: &EvaluateReport,
-    ape: &AbsolutePoseError,
-    estimate: &[TimedPose],
-    reference: &[TimedPose],
-) -> Figure {
-    let place = |pose: &TimedPose| -> [f64; 3] { pose.pose.translation.vector.into() };
-    let moved = |pose: &TimedPose| -> [f64; 3] {
-        ape.alignment
-            .apply(&pose.pose.translation.vector.into())
-            .into()
-    };
-    let tracks = [
+fn place(pose: &TimedPose) -> [f64; 3] {
+    pose.pose.translation.vector.into()
+}
+
+/// Both trajectories in the frame of the true one.
+fn tracks(ape: &AbsolutePoseError, estimate: &[TimedPose], reference: &[TimedPose]) -> [Track; 2] {
+    let moved = |pose: &TimedPose| ape.alignment.apply(&place(pose).into()).into();
+    [
         Track {
             label: format!("reference ({})", reference.len()),
             color: color::WALL,
@@ -214,11 +224,16 @@ fn figure(
             dashed: false,
             through: estimate.iter().map(moved).collect(),
         },
-    ];
+    ]
+}
+
+/// Both trajectories, and a stroke from each compared pose to where it should be.
+fn figure(report: &EvaluateReport, ape: &AbsolutePoseError, tracks: &[Track; 2]) -> Figure {
+    let [truth, found] = tracks;
     let axes = AxisPair::widest(tracks.iter().flat_map(|track| &track.through));
     let stroke = |&(i, j): &(usize, usize)| {
-        let (from, to) = (estimate.get(i)?, reference.get(j)?);
-        Some([axes.project(&moved(from)), axes.project(&place(to))])
+        let (from, to) = (found.through.get(i)?, truth.through.get(j)?);
+        Some([axes.project(from), axes.project(to)])
     };
     let ends = ape.pairs.iter().filter_map(stroke).collect();
     let title = "Estimated and true trajectory";
@@ -226,7 +241,7 @@ fn figure(
         "ATE rmse {:.4} m, {} pairs, {} alignment, scale {:.4}",
         report.translation.rmse, report.pairs, report.align, report.scale
     );
-    let mut figure = trajectory::figure(title, &subtitle, "m", axes, &tracks);
+    let mut figure = trajectory::figure(title, &subtitle, "m", axes, tracks);
     let errors = Layer::new(
         "error",
         color::REMOVED,

@@ -1,12 +1,14 @@
 //! Drawing a figure as SVG: titles, axes and legend by plotters, the layers between them by us.
 
 use core::fmt;
+use core::ops::Range;
 
 use plotters::coord::{Shift, types::RangedCoordf64};
 use plotters::prelude::*;
 
 use super::figure::{Figure, Layer, Shape};
 use super::frame::Frame;
+use super::legend::emptiest_corner;
 use super::shapes;
 
 /// Size of a figure, pixels.
@@ -46,10 +48,7 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawE
 impl Figure {
     /// The figure as an SVG document.
     pub(crate) fn to_svg(&self) -> Result<String, DrawError> {
-        let size = (
-            f64::from(SIZE.0 - LEFT - RIGHT),
-            f64::from(SIZE.1 - TOP - BOTTOM),
-        );
+        let size = area();
         let frame = Frame::around(self, size.0 / size.1);
         let mut svg = String::new();
         self.draw_around_layers(&mut svg, &frame)?;
@@ -76,6 +75,8 @@ impl Figure {
             .configure_mesh()
             .x_desc(self.axes[0].as_str())
             .y_desc(self.axes[1].as_str())
+            .x_label_formatter(&|value| tick(*value, &frame.x))
+            .y_label_formatter(&|value| tick(*value, &frame.y))
             .axis_desc_style(font(17.0, TEXT))
             .label_style(font(15.0, TEXT))
             .axis_style(FAINT)
@@ -83,7 +84,7 @@ impl Figure {
             .light_line_style(TRANSPARENT)
             .draw()?;
         root.draw(&Text::new(PLACE, (0, 0), font(10.0, TEXT)))?;
-        self.draw_legend(&mut chart)?;
+        self.draw_legend(&mut chart, frame)?;
         root.present()?;
         Ok(())
     }
@@ -93,6 +94,7 @@ impl Figure {
         root.draw(&Text::new(self.title.clone(), (x, 12), font(23.0, TEXT)))?;
         let subtitle = match frame.clipped(self) {
             (0, _) => self.subtitle.clone(),
+            (1, _) => format!("{}; 1 point lies outside the picture", self.subtitle),
             (outside, _) => format!(
                 "{}; {outside} points lie outside the picture",
                 self.subtitle
@@ -102,7 +104,7 @@ impl Figure {
         Ok(())
     }
 
-    fn draw_legend<'a>(&self, chart: &mut Chart<'a, 'a>) -> Result<(), DrawError> {
+    fn draw_legend<'a>(&self, chart: &mut Chart<'a, 'a>, frame: &Frame) -> Result<(), DrawError> {
         let mut lines = 0;
         for layer in self.layers.iter().filter(|layer| !layer.is_empty()) {
             let Some(label) = &layer.label else { continue };
@@ -116,7 +118,7 @@ impl Figure {
         if lines > 0 {
             chart
                 .configure_series_labels()
-                .position(SeriesLabelPosition::UpperRight)
+                .position(emptiest_corner(self, frame, area()).position())
                 .background_style(WHITE.mix(0.86))
                 .border_style(RGBColor(206, 210, 216))
                 .label_font(font(15.0, TEXT))
@@ -143,6 +145,29 @@ fn sample<'a>(
             let box_style = color.mix(layer.opacity.max(0.3)).filled();
             Rectangle::new([(x + 3, y - 5), (x + 17, y + 5)], box_style).into_dyn()
         }
+    }
+}
+
+/// Width and height of the drawing area, pixels.
+fn area() -> (f64, f64) {
+    (
+        f64::from(SIZE.0 - LEFT - RIGHT),
+        f64::from(SIZE.1 - TOP - BOTTOM),
+    )
+}
+
+/// A number on an axis, with as many decimals as its ten or so steps need; never a negative zero.
+fn tick(value: f64, range: &Range<f64>) -> String {
+    let step = (range.end - range.start) / 10.0;
+    let decimals = (-step.log10()).ceil().clamp(0.0, 9.0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text
+        .trim_start_matches('-')
+        .chars()
+        .all(|c| matches!(c, '0' | '.'))
+    {
+        true => text.trim_start_matches('-').to_owned(),
+        false => text,
     }
 }
 

@@ -4,6 +4,7 @@ mod axes;
 mod draw;
 mod figure;
 mod frame;
+mod legend;
 mod outline;
 mod png;
 mod save;
@@ -12,6 +13,6 @@ mod shapes;
 pub(crate) mod trajectory;
 
 pub(crate) use axes::TopView;
-pub(crate) use figure::{Figure, Layer, Shape, color};
+pub(crate) use figure::{Color, Figure, Layer, Shape, color};
 pub(crate) use save::save;
 pub(crate) use trajectory::{AxisPair, Track};

@@ -7,8 +7,9 @@ use edge_slam::depth::DepthImage;
 use edge_slam::edge::{
     CannyConfig, EdgeChain, JunctionConfig, LJunction, canny, find_junctions, trace_chains,
 };
-use edge_slam::feature::{Keypoint, OrbConfig, OrbExtractor};
+use edge_slam::feature::{Keypoint, OrbExtractor};
 use edge_slam::image::GrayView;
+use edge_slam::odometry::OdometryConfig;
 use resvg::tiny_skia::{Color, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
 use crate::failure::Failure;
@@ -24,7 +25,8 @@ pub(crate) fn draw_frame(
     image: &GrayView<'_>,
     depth: Option<&DepthImage>,
 ) -> Result<Vec<&'static str>, Failure> {
-    let features = OrbExtractor::new(OrbConfig::default())
+    // Those that tracking uses.
+    let features = OrbExtractor::new(OdometryConfig::default().orb)
         .map_err(Failure::internal)?
         .extract(image);
     let edges = canny(image, &CannyConfig::default()).map_err(Failure::internal)?;
