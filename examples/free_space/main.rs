@@ -10,6 +10,7 @@ use std::io::{self, ErrorKind, Write};
 mod arguments;
 mod map;
 mod measure;
+mod planner;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -62,5 +63,7 @@ fn run(arguments: &Arguments, out: &mut impl Write) -> Result<(), Box<dyn Error>
         let measured = measure::proven(&map, &surface, &setting, arguments.radius)?;
         table::row(out, &setting, &measured, surface.len())?;
     }
+    let planner = planner::measured(&map, &surface, arguments)?;
+    table::planner(out, &planner, surface.len())?;
     Ok(())
 }

@@ -6,18 +6,19 @@ use std::io::BufReader;
 use std::path::Path;
 
 use edge_slam::evaluation::{Alignment, Similarity, TimedPose, align_points};
-use slam_bridge::{Map, read_map, read_tum};
+use slam_bridge::{KeyFrameId, Map, read_map, read_tum};
 use sparse_to_obstacles::Ray;
+use submodular_minimax::{Views, ViewsError};
 
 use crate::arguments::Arguments;
 
 /// A time and a pose belong together up to this many seconds apart.
 const PAIRING: f64 = 0.02;
 
-/// Points and viewing rays, metres.
+/// Points, and which camera places see them, metres.
 pub(crate) struct AlignedMap {
     pub(crate) points: Vec<[f64; 3]>,
-    pub(crate) rays: Vec<Ray>,
+    pub(crate) views: Views,
     /// Keyframes with a reference pose.
     pub(crate) matches: usize,
     /// Root mean square distance of those to the reference, metres.
@@ -77,7 +78,7 @@ pub(crate) fn aligned(
         points: points
             .map(|p| similarity.apply(&p.position).into())
             .collect(),
-        rays: rays(&map, &similarity),
+        views: views(&map, &similarity)?,
         matches: own.len(),
         residual,
     })
@@ -92,16 +93,41 @@ fn matches(map: &Map, reference: &[TimedPose]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>)
     map.keyframes.iter().filter_map(pair).unzip()
 }
 
-/// From every keyframe to every point that it sees.
-fn rays(map: &Map, similarity: &Similarity) -> Vec<Ray> {
-    let mut rays = Vec::new();
-    for point in &map.points {
-        let end = similarity.apply(&point.position).into();
-        let observers = point.observers.iter().filter_map(|&id| map.keyframe(id));
-        rays.extend(observers.map(|keyframe| Ray {
-            origin: similarity.apply(&keyframe.center()).into(),
-            end,
-        }));
+/// Who sees what.
+fn views(map: &Map, similarity: &Similarity) -> Result<Views, ViewsError> {
+    let place = |id: &KeyFrameId| {
+        let keyframes = &map.keyframes;
+        keyframes
+            .binary_search_by_key(id, |keyframe| keyframe.id)
+            .ok()
+    };
+    let center = |keyframe: &slam_bridge::KeyFrame| similarity.apply(&keyframe.center()).into();
+    let observers = map
+        .points
+        .iter()
+        .map(|point| point.observers.iter().filter_map(place).collect());
+    Views::new(
+        map.keyframes.iter().map(center).collect(),
+        observers.collect(),
+    )
+}
+
+impl AlignedMap {
+    /// From every keyframe to every one of these points that it sees.
+    pub(crate) fn rays(&self, points: impl IntoIterator<Item = usize>) -> Vec<Ray> {
+        let mut rays = Vec::new();
+        for point in points {
+            let origins = self.views.observers(point);
+            rays.extend(origins.map(|camera| Ray {
+                origin: self.views.viewpoints()[camera],
+                end: self.points[point],
+            }));
+        }
+        rays
     }
-    rays
+
+    /// From every keyframe to every point that it sees.
+    pub(crate) fn all_rays(&self) -> Vec<Ray> {
+        self.rays(0..self.points.len())
+    }
 }

@@ -106,7 +106,7 @@ pub(crate) fn proven(
 /// Proven free space, and how many points were dropped.
 fn space(map: &AlignedMap, setting: &Setting) -> Result<(FreeSpace, usize), FreeSpaceError> {
     let nothing: [[f64; 3]; 0] = [];
-    let mut space = FreeSpace::from_rays(map.rays.iter().copied(), &nothing, &setting.config)?;
+    let mut space = FreeSpace::from_rays(map.all_rays(), &nothing, &setting.config)?;
     let mut solid = map.points.clone();
     if setting.drops_contradicted {
         solid.retain(|&point| !space.contradicts(point));

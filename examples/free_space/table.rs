@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use crate::arguments::Arguments;
 use crate::map::AlignedMap;
 use crate::measure::{HULLS_CLEARANCE, Measured, Open, Setting};
+use crate::planner::Planner;
 use crate::truth::Surface;
 
 pub(crate) fn introduction(
@@ -13,7 +14,7 @@ pub(crate) fn introduction(
     surface: &Surface,
     arguments: &Arguments,
 ) -> io::Result<()> {
-    let (points, rays) = (map.points.len(), map.rays.len());
+    let (points, rays) = (map.points.len(), map.all_rays().len());
     let (matches, residual) = (map.matches, map.residual);
     writeln!(
         out,
@@ -66,6 +67,25 @@ pub(crate) fn row(
     writeln!(
         out,
         "| {name} | {clearance} | {ratio} | {triangles} | {dropped} | {centers} | {touch} |"
+    )
+}
+
+/// Only what a motion check says: a planner asks for nothing else.
+pub(crate) fn planner(out: &mut impl Write, planner: &Planner, surface: usize) -> io::Result<()> {
+    let (clearance, ratio) = (planner.config.clearance, planner.config.max_depth_ratio);
+    let (triangles, dropped) = (planner.config.max_triangle_angle, planner.dropped);
+    let (hulls, proven) = (
+        counted(planner.hulls, surface),
+        counted(planner.proven.surface, surface),
+    );
+    writeln!(
+        out,
+        "| plan, hulls only | - | - | - | {dropped} | - | - | {hulls} | - |"
+    )?;
+    let places = planner.proven.places;
+    writeln!(
+        out,
+        "| plan, proven free | {clearance} | {ratio} | {triangles} | {dropped} | - | - | {proven} | {places} |"
     )
 }
 

@@ -11,7 +11,7 @@ use slam_bridge::{KeyFrame, KeyFrameId, Map, write_map_folder, write_tum};
 use crate::arguments::Arguments;
 use crate::measure::{Measured, hulls_view, proven, settings};
 use crate::truth::cell;
-use crate::{map, run, truth};
+use crate::{map, planner, run, truth};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -162,6 +162,26 @@ fn a_wall_without_points_is_open_to_hulls_and_closed_to_rays() {
     remove_dir_all(&arguments.sequence).unwrap();
 }
 
+/// The space of a planner, and how many voxels of the surface there are.
+fn plan(arguments: &Arguments) -> Outcome<(planner::Planner, usize)> {
+    let reference = map::reference(arguments)?;
+    let map = map::aligned(&arguments.map, &reference)?;
+    let surface = truth::surface(arguments, &reference, |_, _| ())?;
+    Ok((planner::measured(&map, &surface, arguments)?, surface.len()))
+}
+
+#[test]
+fn planners_keep_to_what_was_seen_through() {
+    let arguments = room("planner", 0.0).unwrap();
+    let (planner, _) = plan(&arguments).unwrap();
+    let (hulls, proven) = (planner.hulls, planner.proven);
+    assert!(
+        hulls > 60 && proven.surface == 0 && proven.places > 100,
+        "{hulls}, {proven:?}"
+    );
+    remove_dir_all(&arguments.sequence).unwrap();
+}
+
 #[test]
 fn rays_through_a_wall_are_told_of() {
     let arguments = room("pierced wall", 1.5).unwrap();
@@ -262,4 +282,11 @@ fn true_surfaces_of_a_kitchen_stay_closed() {
     let export = rows.last().unwrap().by_centers;
     assert!(export.surface * 2_000 <= surface, "{export:?}");
     assert!(export.places >= 4_673, "{export:?}");
+    let (planner, surface) = plan(&arguments).unwrap();
+    let (hulls, proven) = (planner.hulls, planner.proven);
+    println!("plan: hulls only {hulls}, {proven:?}");
+    assert!(
+        hulls * 3 > surface && proven.surface * 100 <= surface,
+        "{hulls}, {proven:?}"
+    );
 }
