@@ -1,5 +1,7 @@
 //! An image of distances along the optical axis.
 
+use crate::image::Neighbourhood;
+
 /// Why numbers cannot be a depth image.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -128,27 +130,14 @@ impl DepthImage {
     /// The bilinear depth at a sub-pixel place, if all four neighbours are known and differ by at most a tenth
     /// of their mean (no interpolation across a depth edge).
     #[must_use]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "the range is checked first"
-    )]
     pub fn bilinear(&self, x: f64, y: f64) -> Option<f64> {
-        let (right, bottom) = ((self.width - 1) as f64, (self.height - 1) as f64);
-        if !(x >= 0.0 && y >= 0.0 && x <= right && y <= bottom) {
-            return None;
-        }
-        let (left, top) = (x as usize, y as usize);
-        let (next, below) = (
-            (left + 1).min(self.width - 1),
-            (top + 1).min(self.height - 1),
-        );
+        let near = Neighbourhood::of(x, y, self.width, self.height)?;
+        let ([left, right], [top, bottom]) = (near.columns, near.rows);
         let corners = [
             self.get(left, top)?,
-            self.get(next, top)?,
-            self.get(left, below)?,
-            self.get(next, below)?,
+            self.get(right, top)?,
+            self.get(left, bottom)?,
+            self.get(right, bottom)?,
         ];
         let (low, high) = corners
             .iter()
@@ -156,10 +145,7 @@ impl DepthImage {
         if high - low > 0.1 * 0.5 * (high + low) {
             return None;
         }
-        let (a, b) = (x - left as f64, y - top as f64);
-        let upper = corners[0] * (1.0 - a) + corners[1] * a;
-        let lower = corners[2] * (1.0 - a) + corners[3] * a;
-        Some(upper * (1.0 - b) + lower * b)
+        Some(near.blend(corners))
     }
 }
 

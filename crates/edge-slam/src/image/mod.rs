@@ -1,11 +1,13 @@
 //! Grey images: a borrowed view, an owned buffer, smoothing, resizing and pyramids.
 
+mod bilinear;
 mod blur;
 mod buffer;
 mod pyramid;
 mod resize;
 mod view;
 
+pub(crate) use bilinear::Neighbourhood;
 pub use blur::{BINOMIAL_RADIUS, gaussian_blur};
 pub(crate) use blur::{smooth_with, weights};
 pub use buffer::GrayImage;

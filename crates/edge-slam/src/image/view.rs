@@ -1,5 +1,7 @@
 //! A borrowed 8-bit grey image: the form in which every function here takes pixels.
 
+use super::bilinear::Neighbourhood;
+
 /// Why bytes cannot be an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -135,27 +137,12 @@ impl<'a> GrayView<'a> {
 
     /// The bilinear value at a sub-pixel place, if all four neighbours are inside.
     #[must_use]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "the range is checked first"
-    )]
     pub fn bilinear(&self, x: f64, y: f64) -> Option<f64> {
-        let inside =
-            x >= 0.0 && y >= 0.0 && x <= (self.width - 1) as f64 && y <= (self.height - 1) as f64;
-        if !inside {
-            return None;
-        }
-        let (left, top) = (x as usize, y as usize);
-        let (right, bottom) = (
-            (left + 1).min(self.width - 1),
-            (top + 1).min(self.height - 1),
-        );
-        let (a, b) = (x - left as f64, y - top as f64);
-        let (upper, lower) = (self.row(top), self.row(bottom));
-        let blend = |row: &[u8]| f64::from(row[left]) * (1.0 - a) + f64::from(row[right]) * a;
-        Some(blend(upper) * (1.0 - b) + blend(lower) * b)
+        let near = Neighbourhood::of(x, y, self.width, self.height)?;
+        let ([left, right], rows) = (near.columns, near.rows);
+        let [upper, lower] = rows.map(|y| self.row(y));
+        let corners = [upper[left], upper[right], lower[left], lower[right]];
+        Some(near.blend(corners.map(f64::from)))
     }
 }
 
