@@ -188,3 +188,15 @@ fn put_layers(svg: &str, layers: &str) -> String {
         None => svg.to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_have_the_decimals_of_their_steps_and_zero_no_sign() {
+        assert_eq!(tick(-1e-17, &(-0.9..0.1)), "0.0");
+        assert_eq!(tick(-0.05, &(-0.2..0.2)), "-0.05");
+        assert_eq!(tick(-6.0, &(-9.0..7.0)), "-6");
+    }
+}
