@@ -2,7 +2,7 @@
 
 use nalgebra::Point2;
 
-/// Parameters of [`estimate_two_view`].
+/// Parameters of [`estimate_two_view`](super::estimate_two_view).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoViewConfig {
     /// Sampson distance up to which a match is an inlier, pixels, > 0. Default 1.
