@@ -107,6 +107,7 @@ pub fn align_matches(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::feature::klt::tests::waves;
     use crate::image::GrayImage;
     use proptest::prelude::*;
 
@@ -118,16 +119,6 @@ mod tests {
             response: 1.0,
             octave,
         }
-    }
-
-    fn waves(dx: f64, dy: f64) -> GrayImage {
-        let pixel = |i: usize| {
-            let (x, y) = ((i % 160) as f64 - dx, (i / 160) as f64 - dy);
-            let value =
-                128.0 + 60.0 * (0.21 * x + 0.05 * y).sin() + 50.0 * (0.17 * y - 0.04 * x).cos();
-            value.round() as u8
-        };
-        GrayImage::new((0..160 * 120).map(pixel).collect(), 160, 120).unwrap()
     }
 
     const MATCH: Match = Match {

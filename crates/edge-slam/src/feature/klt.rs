@@ -226,13 +226,13 @@ fn sample(view: &GrayView<'_>, [x, y]: [f64; 2], radius: usize, into: &mut Vec<f
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::image::GrayImage;
     use proptest::prelude::*;
 
     /// A smooth pattern, moved.
-    fn waves(dx: f64, dy: f64) -> GrayImage {
+    pub(in crate::feature) fn waves(dx: f64, dy: f64) -> GrayImage {
         let pixel = |i: usize| {
             let (x, y) = ((i % 160) as f64 - dx, (i / 160) as f64 - dy);
             let value =
