@@ -17,7 +17,7 @@ use rand_pcg::Pcg64;
 use rrt_refine::refine::{
     RopeConfig, ShortcutConfig, TautConfig, dag, greedy, rope, shortcut, taut,
 };
-use rrt_refine::{Bounds, Path, RrtConfig, rrt};
+use rrt_refine::{Bounds, Path, Query, RrtConfig, rrt};
 
 type P = [f64; 2];
 
@@ -33,14 +33,8 @@ fn paths(step_length: f64) -> Vec<(World, Path<2>)> {
         .filter_map(|seed| {
             let world = discs(seed);
             let free = |a: &P, b: &P| is_free(&world, a, b);
-            let plan = rrt(
-                [0.5; 2],
-                [19.5; 2],
-                &bounds,
-                &free,
-                &config,
-                &mut Pcg64::new(seed, 5),
-            );
+            let query = Query::new([0.5; 2], [19.5; 2], bounds);
+            let plan = rrt(&query, &free, &config, &mut Pcg64::new(seed, 5));
             let path = plan.ok()?.path?;
             Some((world, path))
         })

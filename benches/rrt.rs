@@ -18,7 +18,9 @@ use discs::{World, discs, is_free};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use rrt_refine::nearest::{KdTree, LinearScan};
-use rrt_refine::{Bounds, RrtConfig, RrtStarConfig, rrt, rrt_connect, rrt_star};
+use rrt_refine::{
+    Bounds, FindPathConfig, Query, RrtConfig, RrtStarConfig, find_path, rrt, rrt_connect, rrt_star,
+};
 
 type P = [f64; 2];
 type Free<'a> = dyn Fn(&P, &P) -> bool + 'a;
@@ -81,6 +83,7 @@ fn insert(c: &mut Criterion) {
 fn grow(c: &mut Criterion) {
     let mut group = c.benchmark_group("rrt/grow");
     let bounds = Bounds::new([0.0; 2], [20.0; 2]).expect("a box");
+    let query = Query::new([1.0; 2], [19.5; 2], bounds);
     let closed = |a: &P, b: &P| (a[0] < 19.0) == (b[0] < 19.0);
     for count in [1_000, 4_000, 16_000, 64_000] {
         let config = RrtConfig {
@@ -91,16 +94,7 @@ fn grow(c: &mut Criterion) {
         };
         group.throughput(Throughput::Elements(count as u64));
         group.bench_function(BenchmarkId::new("rrt", count), |b| {
-            b.iter(|| {
-                rrt(
-                    [1.0; 2],
-                    [19.5; 2],
-                    &bounds,
-                    &closed,
-                    &config,
-                    &mut Pcg64::new(1, 1),
-                )
-            });
+            b.iter(|| rrt(&query, &closed, &config, &mut Pcg64::new(1, 1)));
         });
         if count <= 4_000 {
             let config = RrtStarConfig {
@@ -108,16 +102,7 @@ fn grow(c: &mut Criterion) {
                 ..Default::default()
             };
             group.bench_function(BenchmarkId::new("rrt_star", count), |b| {
-                b.iter(|| {
-                    rrt_star(
-                        [1.0; 2],
-                        [19.5; 2],
-                        &bounds,
-                        &closed,
-                        &config,
-                        &mut Pcg64::new(1, 1),
-                    )
-                });
+                b.iter(|| rrt_star(&query, &closed, &config, &mut Pcg64::new(1, 1)));
             });
         }
     }
@@ -141,7 +126,7 @@ fn solve(c: &mut Criterion) {
         informed: true,
         ..star
     };
-    let (start, goal) = ([0.5; 2], [19.5; 2]);
+    let query = Query::new([0.5; 2], [19.5; 2], bounds);
     group.throughput(Throughput::Elements(worlds.len() as u64));
     group.sample_size(20);
     let mut each = |name: &str, plan: &dyn Fn(&Free<'_>) -> bool| {
@@ -156,16 +141,23 @@ fn solve(c: &mut Criterion) {
     };
     let rng = || Pcg64::new(5, 5);
     each("rrt", &|free| {
-        rrt(start, goal, &bounds, &free, &config, &mut rng()).is_ok()
+        rrt(&query, &free, &config, &mut rng()).is_ok()
     });
     each("rrt_connect", &|free| {
-        rrt_connect(start, goal, &bounds, &free, &config, &mut rng()).is_ok()
+        rrt_connect(&query, &free, &config, &mut rng()).is_ok()
+    });
+    each("find_path", &|free| {
+        let config = FindPathConfig {
+            rrt: config,
+            ..FindPathConfig::default()
+        };
+        find_path(&query, &free, &config, &mut rng()).is_ok()
     });
     each("rrt_star, 1000", &|free| {
-        rrt_star(start, goal, &bounds, &free, &star, &mut rng()).is_ok()
+        rrt_star(&query, &free, &star, &mut rng()).is_ok()
     });
     each("informed_rrt_star, 1000", &|free| {
-        rrt_star(start, goal, &bounds, &free, &informed, &mut rng()).is_ok()
+        rrt_star(&query, &free, &informed, &mut rng()).is_ok()
     });
     group.finish();
 }

@@ -2,7 +2,7 @@
 //!
 //! Fifty queries through a furnished apartment (needs the data folder, `EXPLORER_DATA`), a ball of 0.15 m, exact swept checks.
 //! Run: `cargo run --release -p examples --example plan_among_hulls`
-//! Prints a table for K = 300 and 1,000: RRT-Connect and `taut`, asked once and six times, against the best of RRT* at 50 ms.
+//! Prints a table for K = 300 and 1,000: `find_path` with one attempt and with its six, against the best of RRT* at 50 ms.
 
 #![allow(clippy::print_stdout, reason = "an example speaks to the terminal")]
 #![expect(clippy::disallowed_methods, reason = "it measures time")]
@@ -14,7 +14,7 @@ use std::time::Instant;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{TautConfig, taut};
-use rrt_refine::{Bounds, Path, RrtConfig, RrtStar, RrtStarConfig, rrt_connect};
+use rrt_refine::{Bounds, FindPathConfig, Path, Query, RrtStar, RrtStarConfig, find_path};
 use serde_json::Value;
 use sparse_to_obstacles::{ObstacleConfig, ObstacleSet};
 
@@ -27,8 +27,7 @@ const STAR_MS: u128 = 50;
 
 struct Scene {
     points: Vec<Place>,
-    bounds: Bounds<3>,
-    queries: Vec<[Place; 2]>,
+    queries: Vec<Query<3>>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -54,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let best: Vec<Option<f64>> = scene
             .queries
             .iter()
-            .map(|&query| star(&scene, &hulls, query))
+            .map(|query| star(&hulls, query))
             .collect();
         for attempts in [1, 6] {
             row(&scene, &hulls, attempts, &best);
@@ -65,9 +64,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn row(scene: &Scene, hulls: &ObstacleSet, attempts: usize, best: &[Option<f64>]) {
     let (mut times, mut ratios, mut clipping) = (Vec::new(), Vec::new(), 0);
-    for (&query, best) in scene.queries.iter().zip(best) {
+    for (query, best) in scene.queries.iter().zip(best) {
         let begun = Instant::now();
-        let path = shortest_of(scene, hulls, query, attempts);
+        let path = find(hulls, query, attempts);
         let elapsed = begun.elapsed().as_secs_f64() * 1e3;
         let Some(path) = path else { continue };
         times.push(elapsed);
@@ -89,25 +88,19 @@ fn row(scene: &Scene, hulls: &ObstacleSet, attempts: usize, best: &[Option<f64>]
     );
 }
 
-/// RRT-Connect and `taut`, asked so often; the shortest answer.
-fn shortest_of(
-    scene: &Scene,
-    hulls: &ObstacleSet,
-    [from, to]: [Place; 2],
-    attempts: usize,
-) -> Option<Path<3>> {
+/// The default pipeline with so many attempts.
+fn find(hulls: &ObstacleSet, query: &Query<3>, attempts: usize) -> Option<Path<3>> {
     let free = |a: &Place, b: &Place| hulls.motion_is_free(*a, *b, RADIUS);
-    let (config, mut rng) = (RrtConfig::default(), Pcg64::seed_from_u64(1));
-    let paths = (0..attempts).filter_map(|_| {
-        let plan = rrt_connect(from, to, &scene.bounds, &free, &config, &mut rng).ok()?;
-        let refined = taut(&plan.path?, &free, &TautConfig::default()).ok()?;
-        Some(refined.path)
-    });
-    paths.min_by(|a, b| a.length().total_cmp(&b.length()))
+    let config = FindPathConfig {
+        attempts,
+        ..FindPathConfig::default()
+    };
+    let found = find_path(query, &free, &config, &mut Pcg64::seed_from_u64(1));
+    found.ok()?.path
 }
 
 /// Length of the shorter answer of RRT* and Informed RRT* after 50 ms each, refined.
-fn star(scene: &Scene, hulls: &ObstacleSet, [from, to]: [Place; 2]) -> Option<f64> {
+fn star(hulls: &ObstacleSet, query: &Query<3>) -> Option<f64> {
     let free = |a: &Place, b: &Place| hulls.motion_is_free(*a, *b, RADIUS);
     let lengths = [false, true].into_iter().filter_map(|informed| {
         let mut config = RrtStarConfig {
@@ -117,7 +110,7 @@ fn star(scene: &Scene, hulls: &ObstacleSet, [from, to]: [Place; 2]) -> Option<f6
         config.rrt.max_iterations = usize::MAX;
         config.rrt.max_nodes = usize::MAX;
         let begun = Instant::now();
-        let mut search = RrtStar::new(from, to, &scene.bounds, &free, &config).ok()?;
+        let mut search = RrtStar::new(query, &free, &config).ok()?;
         let mut rng = Pcg64::seed_from_u64(1);
         let plan = search.advance(&mut rng, |_| begun.elapsed().as_millis() >= STAR_MS);
         let refined = taut(&plan.path?, &free, &TautConfig::default()).ok()?;
@@ -161,11 +154,7 @@ fn load(stem: &std::path::Path) -> Result<Scene, Box<dyn Error>> {
     let queries = scene["queries"].as_array().ok_or("no queries")?;
     let queries = queries
         .iter()
-        .map(|query| [vector(&query[0], 0), vector(&query[1], 0)])
+        .map(|query| Query::new(vector(&query[0], 0), vector(&query[1], 0), bounds))
         .collect();
-    Ok(Scene {
-        points,
-        bounds,
-        queries,
-    })
+    Ok(Scene { points, queries })
 }

@@ -7,7 +7,7 @@ use std::error::Error;
 use indoor_sim::{SimConfig, Simulator, World};
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{TautConfig, taut};
-use rrt_refine::{Bounds, RrtConfig, rrt_connect};
+use rrt_refine::{Bounds, Query, RrtConfig, rrt_connect};
 use slam_bridge::nalgebra::Point3;
 use slam_bridge::{KeyFrame, Map, SlamSource};
 use sparse_to_obstacles::Ray;
@@ -140,7 +140,8 @@ impl Pilot {
         let bounds = Bounds::new(low, high)?;
         let free = |a: &Place, b: &Place| world.segment_is_free(*a, *b, BERTH);
         let (config, mut rng) = (RrtConfig::default(), Pcg64::new(1, 1));
-        let Ok(plan) = rrt_connect(self.here(), goal, &bounds, &free, &config, &mut rng) else {
+        let query = Query::new(self.here(), goal, bounds);
+        let Ok(plan) = rrt_connect(&query, &free, &config, &mut rng) else {
             return Ok(false);
         };
         let Some(path) = plan.path else {

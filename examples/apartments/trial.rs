@@ -5,7 +5,7 @@ use std::error::Error;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{TautConfig, taut};
-use rrt_refine::{Bounds, Path, RrtConfig, rrt_connect};
+use rrt_refine::{Bounds, Path, Query, RrtConfig, rrt_connect};
 use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Ray, Space};
 
 use crate::scan::{Place, Scan};
@@ -189,9 +189,8 @@ fn plan(
         ..RrtConfig::default()
     };
     let mut rng = Pcg64::new(1, 1);
-    let path = rrt_connect(from, to, bounds, free, &config, &mut rng)
-        .ok()?
-        .path?;
+    let query = Query::new(from, to, *bounds);
+    let path = rrt_connect(&query, free, &config, &mut rng).ok()?.path?;
     taut(&path, free, &TautConfig::default())
         .ok()
         .map(|refined| refined.path)

@@ -7,7 +7,7 @@
 
 use nalgebra::Point3;
 use rand::Rng;
-use rrt_refine::{Bounds, Path, RrtConfig, refine, rrt};
+use rrt_refine::{Bounds, Path, Query, RrtConfig, refine, rrt};
 
 use crate::config::ExplorationConfig;
 use crate::reach::Reach;
@@ -129,14 +129,6 @@ fn grow(
         max_iterations: config.rrt_iterations,
         ..RrtConfig::default()
     };
-    rrt(
-        *flooded.first()?,
-        *flooded.last()?,
-        &bounds,
-        &free,
-        &settings,
-        rng,
-    )
-    .ok()?
-    .path
+    let query = Query::new(*flooded.first()?, *flooded.last()?, bounds);
+    rrt(&query, &free, &settings, rng).ok()?.path
 }

@@ -1,4 +1,4 @@
-//! Plans through a maze of walls with RRT-Connect, refines the path and draws both.
+//! Finds a short path through a maze of walls and draws it with the path as planned.
 //!
 //! Input: walls as segments with openings, a point-shaped vehicle. Output: a map of characters, `.` the raw path, `o` the
 //! refined one, and the figures of the search.
@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
 
 use rand_pcg::Pcg64;
-use rrt_refine::{Bounds, Path, RrtConfig, refine, rrt_connect};
+use rrt_refine::{Bounds, FindPathConfig, Path, Query, find_path};
 
 /// Walls at these x, each with an opening between two values of y.
 const WALLS: [(f64, [f64; 2]); 3] = [(3.0, [7.0, 9.0]), (6.0, [1.0, 2.5]), (9.0, [6.0, 7.0])];
@@ -21,28 +21,22 @@ fn is_free(a: &[f64; 2], b: &[f64; 2]) -> bool {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bounds = Bounds::new([0.0, 0.0], [12.0, 10.0])?;
-    let (start, goal) = ([1.0, 1.0], [11.0, 2.0]);
-    let config = RrtConfig::default();
-    let plan = rrt_connect(
-        start,
-        goal,
-        &bounds,
-        &is_free,
-        &config,
-        &mut Pcg64::new(7, 1),
-    )?;
+    let query = Query::new([1.0, 1.0], [11.0, 2.0], bounds);
+    let mut rng = Pcg64::new(7, 1);
+    let found = find_path(&query, &is_free, &FindPathConfig::default(), &mut rng)?;
+    let plan = &found.plan;
     println!(
-        "{:?} after {} samples, {} nodes, {} checks",
-        plan.stop, plan.iterations, plan.nodes, plan.checks
+        "best of {}: {:?} after {} samples, {} nodes, {} checks",
+        found.attempts, plan.stop, plan.iterations, plan.nodes, plan.checks
     );
-    let raw = plan.path.ok_or("no path within the budget")?;
-    let refined = refine::taut(&raw, &is_free, &refine::TautConfig::default())?;
-    draw(&raw, &refined.path)?;
+    let raw = plan.path.as_ref().ok_or("no path within the budget")?;
+    let path = found.path.ok_or("no path within the budget")?;
+    draw(raw, &path)?;
     println!(
-        "{:.2} long, refined to {:.2} with {} checks",
+        "{:.2} long, refined to {:.2}; {} checks in all",
         raw.length(),
-        refined.path.length(),
-        refined.checks
+        path.length(),
+        found.checks
     );
     Ok(())
 }

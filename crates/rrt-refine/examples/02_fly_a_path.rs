@@ -6,7 +6,7 @@
 
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{self, ClearanceCost, RoundingConfig};
-use rrt_refine::{Bounds, Leg, RrtStarConfig, rrt_star};
+use rrt_refine::{Bounds, Leg, Query, RrtStarConfig, rrt_star};
 
 /// Axes of the pillars (x, y), radius 0.5 m, floor to ceiling.
 const PILLARS: [[f64; 2]; 3] = [[2.0, 1.0], [3.0, 3.0], [4.5, 1.5]];
@@ -41,14 +41,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bounds = Bounds::new([0.0; 3], [6.0, 4.0, 2.5])?;
     let mut config = RrtStarConfig::informed();
     config.rrt.max_iterations = 1000;
-    let plan = rrt_star(
-        [0.5, 0.5, 1.0],
-        [5.5, 3.5, 1.5],
-        &bounds,
-        &is_free,
-        &config,
-        &mut Pcg64::new(1, 1),
-    )?;
+    let query = Query::new([0.5, 0.5, 1.0], [5.5, 3.5, 1.5], bounds);
+    let plan = rrt_star(&query, &is_free, &config, &mut Pcg64::new(1, 1))?;
     let path = plan.path.ok_or("no path within the budget")?;
 
     let cost = ClearanceCost {

@@ -14,7 +14,7 @@ use std::error::Error;
 use planar::DiscWorld;
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{Places, ShortcutConfig, dag, greedy, rope, shortcut, taut};
-use rrt_refine::{Path, RrtConfig, rrt};
+use rrt_refine::{Path, Query, RrtConfig, rrt};
 
 const WORLDS: usize = 60;
 const NAMES: [&str; 8] = [
@@ -53,7 +53,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (world, start, goal) = DiscWorld::random(seed, 20.0, 55);
         let free = |a: &[f64; 2], b: &[f64; 2]| world.is_free(a, b);
         let rng = &mut Pcg64::new(seed.into(), 5);
-        let plan = rrt(start, goal, &world.bounds(), &free, &config, rng)?;
+        let query = Query::new(start, goal, world.bounds());
+        let plan = rrt(&query, &free, &config, rng)?;
         let rows = compare(&world, &plan.path.ok_or("a world without a path")?)?;
         let best = rows.iter().map(|row| row.0).fold(f64::INFINITY, f64::min);
         for ((length, checks), row) in rows.into_iter().zip(&mut table) {

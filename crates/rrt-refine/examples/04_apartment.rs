@@ -12,8 +12,11 @@ use std::error::Error;
 
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{TautConfig, dag, rope, taut};
-use rrt_refine::{RrtConfig, RrtStar, RrtStarConfig, rrt, rrt_connect};
-use stopwatch::{Query, measure, now};
+use rrt_refine::{
+    FindPathConfig, Path, Plan, Query, RefineStop, Refined, RrtConfig, RrtStar, RrtStarConfig,
+    find_path, rrt, rrt_connect,
+};
+use stopwatch::{measure, now};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some((world, queries)) = scene::apartment() else {
@@ -22,11 +25,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let free = |a: &[f64; 3], b: &[f64; 3]| world.is_free(a, b);
     let config = RrtConfig::default();
 
-    let single =
-        |[from, to]: Query, rng: &mut Pcg64| rrt(from, to, &world.bounds, &free, &config, rng);
-    let double = |[from, to]: Query, rng: &mut Pcg64| {
-        rrt_connect(from, to, &world.bounds, &free, &config, rng)
-    };
+    let single = |query: &Query<3>, rng: &mut Pcg64| rrt(query, &free, &config, rng);
+    let double = |query: &Query<3>, rng: &mut Pcg64| rrt_connect(query, &free, &config, rng);
     let mut star_config = RrtStarConfig::default();
     star_config.rrt.max_iterations = usize::MAX;
     star_config.rrt.max_nodes = usize::MAX;
@@ -35,12 +35,20 @@ fn main() -> Result<(), Box<dyn Error>> {
             informed,
             ..star_config
         };
-        let (world, free) = (&world, &free);
-        move |[from, to]: Query, rng: &mut Pcg64| {
+        let free = &free;
+        move |query: &Query<3>, rng: &mut Pcg64| {
             let begun = now();
-            let mut search = RrtStar::new(from, to, &world.bounds, free, &config)?;
+            let mut search = RrtStar::new(query, free, &config)?;
             Ok(search.advance(rng, |_| begun.elapsed().as_millis() >= 50))
         }
+    };
+    let best_of_six = |query: &Query<3>, rng: &mut Pcg64| {
+        let found = find_path(query, &free, &FindPathConfig::default(), rng)?;
+        Ok(Plan {
+            path: found.path,
+            checks: found.checks,
+            ..found.plan
+        })
     };
     let shortest = |path: &_| Ok(dag(path, &free));
     let pulled = |path: &_| taut(path, &free, &TautConfig::default());
@@ -66,8 +74,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             "RRT-Connect, taut in 2 rounds",
             measure(&queries, double, pulled_twice)?,
         ),
-        ("**RRT-Connect, taut**", measure(&queries, double, pulled)?),
+        ("RRT-Connect, taut", measure(&queries, double, pulled)?),
+        (
+            "**`find_path`** (RRT-Connect and taut, best of 6)",
+            measure(&queries, best_of_six, |path| Ok(unrefined(path)))?,
+        ),
         ("RRT-Connect, rope", measure(&queries, double, roped)?),
     ]);
     Ok(())
+}
+
+/// The path as it is, refined already.
+fn unrefined(path: &Path<3>) -> Refined<3> {
+    Refined {
+        path: path.clone(),
+        checks: 0,
+        length_before: path.length(),
+        stop: RefineStop::Done,
+    }
 }

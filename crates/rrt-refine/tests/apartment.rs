@@ -47,12 +47,11 @@ fn every_query_is_solved_without_a_touch_and_about_as_short_as_can_be() {
     let mut star = RrtStarConfig::informed();
     star.rrt.max_iterations = 800;
     let (mut connect_total, mut star_total) = (0.0, 0.0);
-    for (seed, [from, to]) in queries.iter().enumerate() {
+    for (seed, query) in queries.iter().enumerate() {
         let rng = || Pcg64::new(seed as u128, 1);
-        let single = rrt(*from, *to, &world.bounds, &free, &config, &mut rng()).expect("fair");
-        let double =
-            rrt_connect(*from, *to, &world.bounds, &free, &config, &mut rng()).expect("fair");
-        let best = rrt_star(*from, *to, &world.bounds, &free, &star, &mut rng()).expect("fair");
+        let single = rrt(query, &free, &config, &mut rng()).expect("fair");
+        let double = rrt_connect(query, &free, &config, &mut rng()).expect("fair");
+        let best = rrt_star(query, &free, &star, &mut rng()).expect("fair");
         let [single, double, best] = [single, double, best].map(|plan| plan.path.expect("solved"));
         let short = taut(&double, &free, &TautConfig::default())
             .expect("good parameters")

@@ -6,20 +6,21 @@
 )]
 
 use rand_pcg::Pcg64;
+use rrt_refine::refine::TautConfig;
 use rrt_refine::{
-    Bounds, ConfigError, Goals, Plan, PlanError, RrtConfig, RrtStarConfig, Stop, rrt, rrt_connect,
-    rrt_star,
+    Bounds, ConfigError, FindPathConfig, Plan, PlanError, Query, RrtConfig, RrtStarConfig, Stop,
+    find_path, rrt, rrt_connect, rrt_star,
 };
 
 type P = [f64; 2];
 
 fn ask(
     start: P,
-    goals: impl Into<Goals<2>>,
+    goals: &[P],
     bounds: &Bounds<2>,
     config: &RrtConfig,
 ) -> [Result<Plan<2>, PlanError>; 3] {
-    let goals = goals.into();
+    let query = Query::to_any_of(start, goals, *bounds);
     // The upper half is an obstacle.
     let free = |a: &P, b: &P| a[1] < 0.5 && b[1] < 0.5;
     let star = RrtStarConfig {
@@ -28,9 +29,9 @@ fn ask(
     };
     let rng = || Pcg64::new(1, 1);
     [
-        rrt(start, goals.clone(), bounds, &free, config, &mut rng()),
-        rrt_connect(start, goals.clone(), bounds, &free, config, &mut rng()),
-        rrt_star(start, goals, bounds, &free, &star, &mut rng()),
+        rrt(&query, &free, config, &mut rng()),
+        rrt_connect(&query, &free, config, &mut rng()),
+        rrt_star(&query, &free, &star, &mut rng()),
     ]
 }
 
@@ -38,7 +39,7 @@ fn unit() -> Bounds<2> {
     Bounds::new([0.0; 2], [1.0; 2]).expect("a box")
 }
 
-fn refused(start: P, goals: impl Into<Goals<2>>, config: &RrtConfig) -> PlanError {
+fn refused(start: P, goals: &[P], config: &RrtConfig) -> PlanError {
     let [a, b, c] = ask(start, goals, &unit(), config).map(|answer| answer.expect_err("refused"));
     // By their words: a NaN does not equal itself.
     assert_eq!(
@@ -54,24 +55,24 @@ const INSIDE: P = [0.1, 0.1];
 fn starts_and_goals_that_make_no_sense_are_refused() {
     let config = RrtConfig::default();
     assert!(matches!(
-        refused([f64::NAN, 0.0], INSIDE, &config),
+        refused([f64::NAN, 0.0], &[INSIDE], &config),
         PlanError::StartNotFinite { axis: 0, .. }
     ));
     assert!(matches!(
-        refused([0.0, f64::INFINITY], INSIDE, &config),
+        refused([0.0, f64::INFINITY], &[INSIDE], &config),
         PlanError::StartNotFinite { axis: 1, .. }
     ));
     assert!(matches!(
-        refused([0.0, 1.5], INSIDE, &config),
+        refused([0.0, 1.5], &[INSIDE], &config),
         PlanError::StartOutside { axis: 1, .. }
     ));
     assert_eq!(
-        refused([0.1, 0.9], INSIDE, &config),
+        refused([0.1, 0.9], &[INSIDE], &config),
         PlanError::StartNotFree
     );
-    assert_eq!(refused(INSIDE, vec![], &config), PlanError::NoGoal);
+    assert_eq!(refused(INSIDE, &[], &config), PlanError::NoGoal);
     assert!(matches!(
-        refused(INSIDE, [0.2, f64::NAN], &config),
+        refused(INSIDE, &[[0.2, f64::NAN]], &config),
         PlanError::GoalNotFinite {
             index: 0,
             axis: 1,
@@ -79,7 +80,7 @@ fn starts_and_goals_that_make_no_sense_are_refused() {
         }
     ));
     assert!(matches!(
-        refused(INSIDE, vec![[0.2, 0.2], [-0.1, 0.2]], &config),
+        refused(INSIDE, &[[0.2, 0.2], [-0.1, 0.2]], &config),
         PlanError::GoalOutside {
             index: 1,
             axis: 0,
@@ -87,7 +88,7 @@ fn starts_and_goals_that_make_no_sense_are_refused() {
         }
     ));
     assert_eq!(
-        refused(INSIDE, vec![[0.2, 0.8], [0.3, 0.9]], &config),
+        refused(INSIDE, &[[0.2, 0.8], [0.3, 0.9]], &config),
         PlanError::NoFreeGoal { goals: 2 }
     );
 }
@@ -98,7 +99,7 @@ fn parameters_out_of_range_are_refused() {
     for step_length in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = refused(
             INSIDE,
-            [0.2, 0.2],
+            &[[0.2, 0.2]],
             &RrtConfig {
                 step_length,
                 ..good
@@ -110,7 +111,7 @@ fn parameters_out_of_range_are_refused() {
         ));
     }
     for goal_bias in [-0.1, 1.1, f64::NAN] {
-        let error = refused(INSIDE, [0.2, 0.2], &RrtConfig { goal_bias, ..good });
+        let error = refused(INSIDE, &[[0.2, 0.2]], &RrtConfig { goal_bias, ..good });
         assert!(matches!(
             error,
             PlanError::Config(ConfigError::GoalBias { .. })
@@ -118,7 +119,7 @@ fn parameters_out_of_range_are_refused() {
     }
     let error = refused(
         INSIDE,
-        [0.2, 0.2],
+        &[[0.2, 0.2]],
         &RrtConfig {
             max_nodes: 0,
             ..good
@@ -128,6 +129,32 @@ fn parameters_out_of_range_are_refused() {
         error,
         PlanError::Config(ConfigError::MaxNodes { value: 0 })
     ));
+    let pipeline = FindPathConfig::default();
+    let broken = TautConfig {
+        min_gain: -1.0,
+        ..pipeline.taut
+    };
+    for (config, expected) in [
+        (
+            FindPathConfig {
+                attempts: 0,
+                ..pipeline
+            },
+            "attempts is 0",
+        ),
+        (
+            FindPathConfig {
+                taut: broken,
+                ..pipeline
+            },
+            "min_gain is -1",
+        ),
+    ] {
+        let query = Query::new(INSIDE, [0.2, 0.2], unit());
+        let open = |_: &P, _: &P| true;
+        let error = find_path(&query, &open, &config, &mut Pcg64::new(1, 1)).expect_err("refused");
+        assert!(error.to_string().contains(expected), "{error}");
+    }
     for rewire_factor in [0.0, 0.9, f64::NAN, f64::INFINITY] {
         let config = RrtStarConfig {
             rewire_factor,
@@ -150,7 +177,7 @@ fn a_start_that_is_a_goal_is_a_path_of_one_vertex() {
             ..RrtConfig::default()
         },
     ] {
-        for plan in ask(INSIDE, vec![[0.3, 0.3], INSIDE], &unit(), &config) {
+        for plan in ask(INSIDE, &[[0.3, 0.3], INSIDE], &unit(), &config) {
             let plan = plan.expect("a fair question");
             assert_eq!((plan.stop, plan.goal), (Stop::Straight, Some(1)));
             assert_eq!(plan.path.expect("a path").points(), [INSIDE]);
@@ -164,7 +191,7 @@ fn no_iterations_give_no_path() {
         max_iterations: 0,
         ..RrtConfig::default()
     };
-    for plan in ask(INSIDE, [0.4, 0.4], &unit(), &config) {
+    for plan in ask(INSIDE, &[[0.4, 0.4]], &unit(), &config) {
         let plan = plan.expect("a fair question");
         assert_eq!(
             (plan.path, plan.stop, plan.iterations),
@@ -177,7 +204,7 @@ fn no_iterations_give_no_path() {
 fn bounds_without_width_are_planned_in() {
     // The only point there is.
     let point = Bounds::new(INSIDE, INSIDE).expect("a box");
-    for plan in ask(INSIDE, INSIDE, &point, &RrtConfig::default()) {
+    for plan in ask(INSIDE, &[INSIDE], &point, &RrtConfig::default()) {
         assert!(plan.expect("a fair question").path.is_some());
     }
     // A line: every sample lies on it.
@@ -186,7 +213,7 @@ fn bounds_without_width_are_planned_in() {
         step_length: 0.1,
         ..RrtConfig::paper()
     };
-    for plan in ask(INSIDE, [0.9, 0.1], &line, &config) {
+    for plan in ask(INSIDE, &[[0.9, 0.1]], &line, &config) {
         let path = plan.expect("a fair question").path.expect("a path");
         assert!(path.points().iter().all(|p| p[1] == 0.1));
     }
@@ -201,7 +228,7 @@ fn extreme_steps_neither_hang_nor_fail() {
             max_nodes: 200,
             ..RrtConfig::paper()
         };
-        for plan in ask(INSIDE, [0.4, 0.4], &unit(), &config) {
+        for plan in ask(INSIDE, &[[0.4, 0.4]], &unit(), &config) {
             let plan = plan.expect("a fair question");
             assert!(plan.iterations <= 200 && plan.nodes <= 201);
         }
@@ -219,9 +246,7 @@ fn a_goal_bias_of_one_is_trapped_but_ends() {
         ..Default::default()
     };
     let plan = rrt(
-        INSIDE,
-        [0.9, 0.1],
-        &unit(),
+        &Query::new(INSIDE, [0.9, 0.1], unit()),
         &free,
         &config,
         &mut Pcg64::new(1, 1),

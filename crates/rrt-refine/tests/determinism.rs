@@ -10,12 +10,14 @@ mod planar;
 use planar::DiscWorld;
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{ShortcutConfig, shortcut};
-use rrt_refine::{Plan, RrtConfig, RrtStarConfig, rrt, rrt_connect, rrt_star};
+use rrt_refine::{
+    FindPathConfig, Plan, Query, RrtConfig, RrtStarConfig, find_path, rrt, rrt_connect, rrt_star,
+};
 
 fn plans(seed: u128) -> [Plan<2>; 4] {
     let (world, start, goal) = DiscWorld::random(4, 12.0, 20);
     let free = |a: &[f64; 2], b: &[f64; 2]| world.is_free(a, b);
-    let bounds = world.bounds();
+    let query = Query::new(start, goal, world.bounds());
     let config = RrtConfig {
         step_length: 0.8,
         max_iterations: 800,
@@ -31,10 +33,10 @@ fn plans(seed: u128) -> [Plan<2>; 4] {
     };
     let rng = || Pcg64::new(seed, 9);
     [
-        rrt(start, goal, &bounds, &free, &config, &mut rng()),
-        rrt_connect(start, goal, &bounds, &free, &config, &mut rng()),
-        rrt_star(start, goal, &bounds, &free, &star, &mut rng()),
-        rrt_star(start, goal, &bounds, &free, &informed, &mut rng()),
+        rrt(&query, &free, &config, &mut rng()),
+        rrt_connect(&query, &free, &config, &mut rng()),
+        rrt_star(&query, &free, &star, &mut rng()),
+        rrt_star(&query, &free, &informed, &mut rng()),
     ]
     .map(|plan| plan.expect("a fair question"))
 }
@@ -55,6 +57,19 @@ fn one_seed_one_answer_on_any_thread() {
     for (a, b) in here.iter().zip(&plans(2)) {
         assert_ne!(a.path, b.path);
     }
+}
+
+#[test]
+fn the_default_pipeline_follows_its_seed() {
+    let (world, start, goal) = DiscWorld::random(4, 12.0, 20);
+    let free = |a: &[f64; 2], b: &[f64; 2]| world.is_free(a, b);
+    let query = Query::new(start, goal, world.bounds());
+    let run = |seed| {
+        let rng = &mut Pcg64::new(seed, 1);
+        find_path(&query, &free, &FindPathConfig::default(), rng).expect("a fair question")
+    };
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1).plan.path, run(2).plan.path);
 }
 
 #[test]

@@ -14,7 +14,9 @@ use rrt_refine::refine::{
     ClearanceCost, RefineStop, Refined, RopeConfig, RoundingConfig, ShortcutConfig, TautConfig,
     dag, dag_by_cost, greedy, rope, round_corners, shortcut, taut,
 };
-use rrt_refine::{Path, RrtConfig, RrtStarConfig, rrt, rrt_connect, rrt_star};
+use rrt_refine::{
+    FindPathConfig, Path, Query, RrtConfig, RrtStarConfig, find_path, rrt, rrt_connect, rrt_star,
+};
 
 type Refiner<'a> = Box<dyn Fn(&Path<2>) -> Refined<2> + 'a>;
 
@@ -27,8 +29,8 @@ fn raw_path(seed: u64) -> Option<(DiscWorld, Path<2>)> {
         ..RrtConfig::paper()
     };
     let mut rng = Pcg64::new(seed.into(), 5);
-    let plan =
-        rrt(start, goal, &world.bounds(), &free, &config, &mut rng).expect("a fair question");
+    let query = Query::new(start, goal, world.bounds());
+    let plan = rrt(&query, &free, &config, &mut rng).expect("a fair question");
     plan.path.map(|path| (world, path))
 }
 
@@ -95,17 +97,25 @@ proptest! {
     fn every_plan_is_free_and_inside_and_joins_its_ends(seed in 0_u64..1_000_000) {
         let (world, start, goal) = DiscWorld::random(seed, 12.0, 20);
         let free = |a: &[f64; 2], b: &[f64; 2]| world.is_free(a, b);
-        let bounds = world.bounds();
+        let query = Query::new(start, goal, world.bounds());
         let config = RrtConfig { step_length: 0.8, max_iterations: 400, ..RrtConfig::default() };
         let star = RrtStarConfig { rrt: config, ..Default::default() };
         let informed = RrtStarConfig { rrt: config, ..RrtStarConfig::informed() };
         let rng = || Pcg64::new(seed.into(), 5);
         let plans = [
-            rrt(start, goal, &bounds, &free, &config, &mut rng()),
-            rrt_connect(start, goal, &bounds, &free, &config, &mut rng()),
-            rrt_star(start, goal, &bounds, &free, &star, &mut rng()),
-            rrt_star(start, goal, &bounds, &free, &informed, &mut rng()),
+            rrt(&query, &free, &config, &mut rng()),
+            rrt_connect(&query, &free, &config, &mut rng()),
+            rrt_star(&query, &free, &star, &mut rng()),
+            rrt_star(&query, &free, &informed, &mut rng()),
         ];
+        let pipeline = FindPathConfig { rrt: config, ..FindPathConfig::default() };
+        let found = find_path(&query, &free, &pipeline, &mut rng()).expect("a fair question");
+        prop_assert_eq!(found.path.is_some(), found.plan.path.is_some());
+        if let (Some(path), Some(raw)) = (found.path, found.plan.path) {
+            prop_assert_eq!((path.start(), path.end()), (start, goal));
+            prop_assert_eq!(path.first_blocked(&free), None);
+            prop_assert!(path.length() <= raw.length());
+        }
         for plan in plans {
             let plan = plan.expect("a fair question");
             prop_assert!(plan.iterations <= 400 && plan.nodes <= 802);
@@ -113,7 +123,7 @@ proptest! {
             let Some(path) = plan.path else { continue };
             prop_assert_eq!((path.start(), path.end()), (start, goal));
             prop_assert_eq!(path.first_blocked(&free), None);
-            prop_assert!(path.points().iter().all(|point| bounds.contains(point)));
+            prop_assert!(path.points().iter().all(|point| query.bounds.contains(point)));
         }
     }
 

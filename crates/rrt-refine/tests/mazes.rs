@@ -7,8 +7,8 @@
 
 use rand_pcg::Pcg64;
 use rrt_refine::{
-    Bounds, Goals, Plan, PlanError, Rrt, RrtConfig, RrtConnect, RrtStar, RrtStarConfig, Stop, rrt,
-    rrt_connect, rrt_star,
+    Bounds, FindPathConfig, Plan, PlanError, Query, Rrt, RrtConfig, RrtConnect, RrtStar,
+    RrtStarConfig, Stop, find_path, rrt, rrt_connect, rrt_star,
 };
 
 type P = [f64; 2];
@@ -40,13 +40,13 @@ fn bounds() -> Bounds<2> {
 const START: P = [0.5, 1.0];
 const GOAL: P = [5.5, 1.0];
 
+fn question() -> Query<2> {
+    Query::new(START, GOAL, bounds())
+}
+
 /// All four planners with the same budget.
-fn all(
-    goals: impl Into<Goals<2>>,
-    free: Free<'_>,
-    config: &RrtConfig,
-) -> [Result<Plan<2>, PlanError>; 4] {
-    let goals = goals.into();
+fn all(goals: &[P], free: Free<'_>, config: &RrtConfig) -> [Result<Plan<2>, PlanError>; 4] {
+    let query = Query::to_any_of(START, goals, bounds());
     let star = RrtStarConfig {
         rrt: *config,
         ..Default::default()
@@ -57,10 +57,10 @@ fn all(
     };
     let rng = || Pcg64::new(11, 3);
     [
-        rrt(START, goals.clone(), &bounds(), &free, config, &mut rng()),
-        rrt_connect(START, goals.clone(), &bounds(), &free, config, &mut rng()),
-        rrt_star(START, goals.clone(), &bounds(), &free, &star, &mut rng()),
-        rrt_star(START, goals, &bounds(), &free, &informed, &mut rng()),
+        rrt(&query, &free, config, &mut rng()),
+        rrt_connect(&query, &free, config, &mut rng()),
+        rrt_star(&query, &free, &star, &mut rng()),
+        rrt_star(&query, &free, &informed, &mut rng()),
     ]
 }
 
@@ -72,10 +72,15 @@ fn short_steps() -> RrtConfig {
     }
 }
 
+/// Of the shortest way around the five tips (1, 1.6), (2, 0.4), (3, 1.6), (4, 0.4), (5, 1.6).
+fn serpentine_length() -> f64 {
+    2.0 * 0.5_f64.hypot(0.6) + 4.0 * 1.0_f64.hypot(1.2)
+}
+
 #[test]
 fn every_planner_finds_its_way_through_a_serpentine() {
     let free = serpentine(0.4);
-    for (k, plan) in all(GOAL, &free, &short_steps()).into_iter().enumerate() {
+    for (k, plan) in all(&[GOAL], &free, &short_steps()).into_iter().enumerate() {
         let plan = plan.expect("a fair question");
         let path = plan.path.expect("a path");
         assert_eq!((path.start(), path.end()), (START, GOAL));
@@ -94,10 +99,8 @@ fn every_planner_finds_its_way_through_a_serpentine() {
 #[test]
 fn star_planners_come_near_the_shortest_way() {
     let free = serpentine(0.4);
-    // Around the five tips (1, 1.6), (2, 0.4), (3, 1.6), (4, 0.4), (5, 1.6).
-    let tip = |dx: f64, dy: f64| (dx * dx + dy * dy).sqrt();
-    let shortest = 2.0 * tip(0.5, 0.6) + 4.0 * tip(1.0, 1.2);
-    let [_, _, star, informed] = all(GOAL, &free, &short_steps());
+    let shortest = serpentine_length();
+    let [_, _, star, informed] = all(&[GOAL], &free, &short_steps());
     let length =
         |plan: Result<Plan<2>, PlanError>| plan.ok().and_then(|p| p.length()).expect("a path");
     let (star, informed) = (length(star), length(informed));
@@ -110,7 +113,7 @@ fn star_planners_come_near_the_shortest_way() {
 #[test]
 fn no_planner_finds_a_way_through_a_closed_wall() {
     let free = serpentine(0.0);
-    for plan in all(GOAL, &free, &short_steps()) {
+    for plan in all(&[GOAL], &free, &short_steps()) {
         let plan = plan.expect("a fair question");
         assert_eq!(plan.path, None);
         assert_eq!((plan.goal, plan.length()), (None, None));
@@ -120,13 +123,70 @@ fn no_planner_finds_a_way_through_a_closed_wall() {
 }
 
 #[test]
+fn the_default_pipeline_says_how_often_it_planned() {
+    let config = FindPathConfig {
+        rrt: short_steps(),
+        ..FindPathConfig::default()
+    };
+    let find = |free: Free<'_>| {
+        find_path(&question(), &free, &config, &mut Pcg64::new(11, 3)).expect("a fair question")
+    };
+    let free = serpentine(0.4);
+    let winding = find(&free);
+    let (path, raw) = (
+        winding.path.expect("a path"),
+        winding.plan.path.expect("it"),
+    );
+    assert_eq!((winding.attempts, winding.plan.stop), (6, Stop::Reached));
+    assert_eq!((path.start(), path.end()), (START, GOAL));
+    assert_eq!(path.first_blocked(&free), None);
+    assert!(path.length() < raw.length() && path.length() < 1.05 * serpentine_length());
+    assert!(winding.checks > winding.plan.checks);
+    // Without a way, or with the straight one, there is nothing to ask again for.
+    let closed = find(&serpentine(0.0));
+    assert_eq!((closed.attempts, closed.plan.stop), (1, Stop::Iterations));
+    assert_eq!((closed.path, closed.plan.path), (None, None));
+    let open = find(&|_, _| true);
+    assert_eq!((open.attempts, open.plan.stop), (1, Stop::Straight));
+    assert_eq!(open.path.expect("a path").points(), [START, GOAL]);
+}
+
+#[test]
+fn more_attempts_find_the_shorter_side() {
+    // A long block between start and goal: above it is the shorter way.
+    let free: Free<'_> = &|a, b| {
+        (0..=200).all(|k| {
+            let t = f64::from(k) / 200.0;
+            let p = [0, 1].map(|axis| a[axis] * (1.0 - t) + b[axis] * t);
+            !((0.8..5.2).contains(&p[0]) && (0.5..1.1).contains(&p[1]))
+        })
+    };
+    let length = |attempts: usize, seed: u128| {
+        let config = FindPathConfig {
+            attempts,
+            ..FindPathConfig::default()
+        };
+        let found = find_path(&question(), &free, &config, &mut Pcg64::new(seed, 3));
+        found.expect("fair").path.expect("a path").length()
+    };
+    let lengths: Vec<[f64; 2]> = (0..20)
+        .map(|seed| [length(1, seed), length(6, seed)])
+        .collect();
+    assert!(lengths.iter().all(|[once, best]| best <= once));
+    // Over the upper corners: 4.4 long, and two slopes of 0.3 along and 0.1 up; under the lower ones it is 11 % more.
+    let shortest = 4.4 + 2.0 * 0.3_f64.hypot(0.1);
+    assert!(lengths.iter().any(|[once, _]| *once > 1.05 * shortest));
+    assert!(lengths.iter().all(|[_, best]| *best < 1.02 * shortest));
+}
+
+#[test]
 fn full_trees_and_closures_stop_the_search() {
     let free = serpentine(0.0);
     let config = RrtConfig {
         max_nodes: 50,
         ..short_steps()
     };
-    for plan in all(GOAL, &free, &config) {
+    for plan in all(&[GOAL], &free, &config) {
         let plan = plan.expect("a fair question");
         assert_eq!(plan.stop, Stop::Nodes);
         assert!(plan.nodes <= 51, "{} nodes", plan.nodes);
@@ -134,13 +194,13 @@ fn full_trees_and_closures_stop_the_search() {
     let config = short_steps();
     let rng = &mut Pcg64::new(1, 1);
     let stop = |p: &rrt_refine::Progress| p.iterations >= 20;
-    let mut single = Rrt::new(START, GOAL, &bounds(), &free, &config).expect("fair");
-    let mut double = RrtConnect::new(START, GOAL, &bounds(), &free, &config).expect("fair");
+    let mut single = Rrt::new(&question(), &free, &config).expect("fair");
+    let mut double = RrtConnect::new(&question(), &free, &config).expect("fair");
     let star = RrtStarConfig {
         rrt: config,
         ..Default::default()
     };
-    let mut star = RrtStar::new(START, GOAL, &bounds(), &free, &star).expect("fair");
+    let mut star = RrtStar::new(&question(), &free, &star).expect("fair");
     for plan in [
         single.advance(rng, stop),
         double.advance(rng, stop),
@@ -162,22 +222,14 @@ fn a_search_goes_on_where_it_stopped() {
         ..whole
     };
     let mut rng = Pcg64::new(11, 3);
-    let mut search = Rrt::new(START, GOAL, &bounds(), &free, &part).expect("fair");
+    let mut search = Rrt::new(&question(), &free, &part).expect("fair");
     let resumed = loop {
         let plan = search.advance(&mut rng, |_| false);
         if plan.stop != Stop::Iterations {
             break plan;
         }
     };
-    let once = rrt(
-        START,
-        GOAL,
-        &bounds(),
-        &free,
-        &whole,
-        &mut Pcg64::new(11, 3),
-    )
-    .expect("fair");
+    let once = rrt(&question(), &free, &whole, &mut Pcg64::new(11, 3)).expect("fair");
     assert_eq!(resumed, once);
     // Asking again changes nothing.
     assert_eq!(search.advance(&mut rng, |_| false), once);
@@ -196,7 +248,7 @@ fn more_time_never_makes_an_anytime_path_longer() {
             informed,
             ..Default::default()
         };
-        let mut search = RrtStar::new(START, GOAL, &bounds(), &free, &config).expect("fair");
+        let mut search = RrtStar::new(&question(), &free, &config).expect("fair");
         let mut rng = Pcg64::new(2, 2);
         let mut last = f64::INFINITY;
         for _ in 0..8 {
@@ -211,13 +263,22 @@ fn more_time_never_makes_an_anytime_path_longer() {
 }
 
 #[test]
+fn a_search_that_was_stopped_before_it_began_is_asked_for_the_straight_motion_once() {
+    let free = serpentine(0.0);
+    // The nearer goal is behind a wall, the other one is seen: a path, but not the shortest there could be.
+    let query = Query::to_any_of([0.9, 0.1], &[[1.1, 0.1], [0.1, 1.9]], bounds());
+    let config = RrtStarConfig::default();
+    let mut search = RrtStar::new(&query, &free, &config).expect("fair");
+    let first = search.advance(&mut Pcg64::new(1, 1), |_| true);
+    assert_eq!((first.stop, first.goal), (Stop::Asked, Some(1)));
+    assert_eq!(search.advance(&mut Pcg64::new(1, 1), |_| true), first);
+}
+
+#[test]
 fn of_several_goals_one_that_can_be_reached_is_taken() {
     let free = serpentine(0.0);
     let goals = [GOAL, [4.5, 1.9], [5.5, 0.2], [2.5, 0.1]];
-    for (k, plan) in all(&goals[..], &free, &short_steps())
-        .into_iter()
-        .enumerate()
-    {
+    for (k, plan) in all(&goals, &free, &short_steps()).into_iter().enumerate() {
         let plan = plan.expect("a fair question");
         let goal = plan.goal.expect("a goal");
         assert!(goal == 1 || goal == 3, "goal {goal}");
@@ -227,7 +288,7 @@ fn of_several_goals_one_that_can_be_reached_is_taken() {
     }
     // A goal inside an obstacle is left out; indices still count it.
     let occupied = |a: &P, b: &P| b[0] < 5.9 && serpentine(0.4)(a, b);
-    for plan in all(vec![[6.0, 1.0], GOAL], &occupied, &short_steps()) {
+    for plan in all(&[[6.0, 1.0], GOAL], &occupied, &short_steps()) {
         assert_eq!(plan.expect("a fair question").goal, Some(1));
     }
 }
@@ -235,7 +296,7 @@ fn of_several_goals_one_that_can_be_reached_is_taken() {
 #[test]
 fn the_straight_motion_ends_the_search_at_once() {
     let open: Free<'_> = &|_, _| true;
-    for plan in all(vec![GOAL, [0.5, 1.5]], open, &short_steps()) {
+    for plan in all(&[GOAL, [0.5, 1.5]], open, &short_steps()) {
         let plan = plan.expect("a fair question");
         assert_eq!(
             (plan.stop, plan.iterations, plan.goal),
@@ -244,7 +305,7 @@ fn the_straight_motion_ends_the_search_at_once() {
         assert_eq!(plan.path.expect("a path").points(), [START, [0.5, 1.5]]);
     }
     for plan in all(
-        GOAL,
+        &[GOAL],
         open,
         &RrtConfig {
             try_straight: false,
@@ -259,7 +320,7 @@ fn the_straight_motion_ends_the_search_at_once() {
 fn one_way_streets_are_respected() {
     // Only motions that do not go back in x are free.
     let forward: Free<'_> = &|a, b| b[0] >= a[0] && serpentine(2.0)(a, b);
-    for plan in all(GOAL, forward, &short_steps()) {
+    for plan in all(&[GOAL], forward, &short_steps()) {
         let path = plan.expect("a fair question").path.expect("a path");
         assert!(path.segments().all(|(a, b)| b[0] >= a[0]));
     }

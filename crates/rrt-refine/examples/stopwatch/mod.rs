@@ -7,9 +7,7 @@ use std::time::Instant;
 
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{RefineError, Refined};
-use rrt_refine::{Path, Plan, PlanError};
-
-pub(crate) type Query = [[f64; 3]; 2];
+use rrt_refine::{Path, Plan, PlanError, Query};
 
 /// Milliseconds to plan, milliseconds to refine, checks, length.
 pub(crate) type Row = [f64; 4];
@@ -21,8 +19,8 @@ pub(crate) fn now() -> Instant {
 
 /// One row a query; times are the best of three runs.
 pub(crate) fn measure(
-    queries: &[Query],
-    plan: impl Fn(Query, &mut Pcg64) -> Result<Plan<3>, PlanError>,
+    queries: &[Query<3>],
+    plan: impl Fn(&Query<3>, &mut Pcg64) -> Result<Plan<3>, PlanError>,
     refine: impl Fn(&Path<3>) -> Result<Refined<3>, RefineError>,
 ) -> Result<Vec<Row>, Box<dyn Error>> {
     let mut rows = Vec::new();
@@ -30,7 +28,7 @@ pub(crate) fn measure(
         let mut row = [f64::INFINITY; 4];
         for _ in 0..3 {
             let begun = now();
-            let plan = plan(*query, &mut Pcg64::new(seed as u128, 1))?;
+            let plan = plan(query, &mut Pcg64::new(seed as u128, 1))?;
             let planned = now();
             let refined = refine(plan.path.as_ref().ok_or("not solved")?)?;
             row[1] = row[1].min(planned.elapsed().as_secs_f64() * 1e3);

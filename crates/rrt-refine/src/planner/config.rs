@@ -102,6 +102,12 @@ pub enum ConfigError {
         /// The value.
         value: f64,
     },
+    /// `attempts` is zero.
+    #[error("attempts is {value}; at least 1 is needed for a path")]
+    Attempts {
+        /// The value.
+        value: usize,
+    },
     /// `max_nodes` leaves no room for the start.
     #[error("max_nodes is {value}; at least 1 node is needed for the start")]
     MaxNodes {

@@ -1,6 +1,7 @@
 //! Why a planner refuses a question.
 
 use super::ConfigError;
+use crate::refine::RefineError;
 
 /// Why a planner refuses a question before it searches.
 ///
@@ -11,6 +12,9 @@ pub enum PlanError {
     /// A parameter is out of its range.
     #[error("planner: {0}")]
     Config(#[from] ConfigError),
+    /// A parameter of the refiner is out of its range.
+    #[error(transparent)]
+    Refine(#[from] RefineError),
     /// The start has a coordinate that is NaN or infinite.
     #[error("planner: the start has {value} on axis {axis}; coordinates must be finite")]
     StartNotFinite {

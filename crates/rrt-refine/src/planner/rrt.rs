@@ -8,12 +8,10 @@
 
 use rand::Rng;
 
-use super::query::Query;
+use super::problem::{Problem, Search};
 use super::tree::Tree;
-use super::{Plan, PlanError, Progress, RrtConfig, Stop};
-use crate::bounds::Bounds;
-use crate::euclid::{PointLike, distance, steer};
-use crate::goals::Goals;
+use super::{Plan, PlanError, Progress, Query, RrtConfig, Stop};
+use crate::euclid::{distance, steer};
 use crate::motion::MotionValidator;
 use crate::path::Path;
 
@@ -21,15 +19,15 @@ use crate::path::Path;
 ///
 /// ```
 /// use rand_pcg::Pcg64;
-/// use rrt_refine::{Bounds, RrtConfig, rrt};
+/// use rrt_refine::{Bounds, Query, RrtConfig, rrt};
 ///
-/// let bounds = Bounds::new([0.0, 0.0], [10.0, 10.0])?;
+/// let query = Query::new([1.0, 1.0], [9.0, 1.0], Bounds::new([0.0, 0.0], [10.0, 10.0])?);
 /// // A wall along x = 5 with a gap above y = 8.
 /// let is_free = |a: &[f64; 2], b: &[f64; 2]| {
 ///     let crossing = (5.0 - a[0]) / (b[0] - a[0]);
 ///     !(0.0..=1.0).contains(&crossing) || a[1] + crossing * (b[1] - a[1]) > 8.0
 /// };
-/// let plan = rrt([1.0, 1.0], [9.0, 1.0], &bounds, &is_free, &RrtConfig::default(), &mut Pcg64::new(1, 1))?;
+/// let plan = rrt(&query, &is_free, &RrtConfig::default(), &mut Pcg64::new(1, 1))?;
 /// assert!(plan.path.is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -37,20 +35,17 @@ use crate::path::Path;
 /// # Errors
 /// A parameter out of range; a start or goal that is not finite, outside the bounds or (the start, or all goals) not free.
 pub fn rrt<const D: usize>(
-    start: impl PointLike<D>,
-    goals: impl Into<Goals<D>>,
-    bounds: &Bounds<D>,
+    query: &Query<D>,
     motion_is_free: &impl MotionValidator<D>,
     config: &RrtConfig,
     rng: &mut impl Rng,
 ) -> Result<Plan<D>, PlanError> {
-    let mut search = Rrt::new(start, goals, bounds, motion_is_free, config)?;
-    Ok(search.advance(rng, |_| false))
+    Ok(Rrt::new(query, motion_is_free, config)?.advance(rng, |_| false))
 }
 
 /// An RRT search that can be stopped by a closure and taken up again.
 pub struct Rrt<'a, const D: usize, M> {
-    query: Query<'a, D, M>,
+    problem: Problem<'a, D, M>,
     tree: Tree<D>,
     /// Node at a goal, that goal, and how it was reached.
     found: Option<(usize, usize, Stop)>,
@@ -62,75 +57,69 @@ impl<'a, const D: usize, M: MotionValidator<D>> Rrt<'a, D, M> {
     /// # Errors
     /// As [`rrt`].
     pub fn new(
-        start: impl PointLike<D>,
-        goals: impl Into<Goals<D>>,
-        bounds: &Bounds<D>,
+        query: &Query<D>,
         motion_is_free: &'a M,
         config: &RrtConfig,
     ) -> Result<Self, PlanError> {
-        let query = Query::new(start, &goals.into(), bounds, motion_is_free, config)?;
-        let tree = Tree::with_roots(&[query.start]);
-        let found = query
-            .goals
-            .iter()
-            .position(|goal| *goal == query.start)
-            .map(|goal| (0, goal, Stop::Straight));
-        Ok(Self { query, tree, found })
+        let problem = Problem::new(query, motion_is_free, config)?;
+        Ok(Self {
+            tree: Tree::with_roots(&[problem.start]),
+            found: problem
+                .goal_at_start()
+                .map(|goal| (0, goal, Stop::Straight)),
+            problem,
+        })
     }
 
     /// Grows the tree until a goal is reached, `stop` returns true, or `max_iterations` more samples are drawn.
     ///
     /// `stop` is asked before each sample; read a clock in it for a budget of time.
-    pub fn advance(
-        &mut self,
-        rng: &mut impl Rng,
-        mut stop: impl FnMut(&Progress) -> bool,
-    ) -> Plan<D> {
-        if self.query.begins_straight() {
-            self.try_straight();
-        }
-        let mut left = self.query.config.max_iterations;
-        let reason = loop {
-            if let Some((_, _, how)) = self.found {
-                break how;
-            }
-            let nodes = self.tree.len();
-            if let Some(reason) = self.query.spend(&mut left, nodes, None, &mut stop) {
-                break reason;
-            }
-            self.grow(rng);
-        };
-        self.plan(reason)
+    pub fn advance(&mut self, rng: &mut impl Rng, stop: impl FnMut(&Progress) -> bool) -> Plan<D> {
+        self.run(rng, stop)
+    }
+}
+
+impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for Rrt<'a, D, M> {
+    fn problem(&mut self) -> &mut Problem<'a, D, M> {
+        &mut self.problem
+    }
+
+    fn settled(&self) -> Option<Stop> {
+        self.found.map(|(_, _, how)| how)
+    }
+
+    fn best_length(&self) -> Option<f64> {
+        None
+    }
+
+    fn nodes(&self) -> usize {
+        self.tree.len()
     }
 
     fn try_straight(&mut self) {
-        if self.found.is_some() {
-            return;
-        }
-        if let Some(goal) = self.query.straight_goal() {
-            let node = self.tree.push(self.query.goals[goal], 0);
+        if let Some(goal) = self.problem.straight_goal() {
+            let node = self.tree.push(self.problem.goals[goal], 0);
             self.found = Some((node, goal, Stop::Straight));
         }
     }
 
-    /// One sample.
     fn grow(&mut self, rng: &mut impl Rng) {
-        let sample = self.query.sample(&self.query.goals, rng);
+        let step = self.problem.config.step_length;
+        let sample = self.problem.sample(&self.problem.goals, rng);
         let parent = self.tree.nearest(&sample);
         let from = *self.tree.point(parent);
-        let to = steer(&from, &sample, self.query.config.step_length);
-        if to == from || !self.query.is_free(&from, &to) {
+        let to = steer(&from, &sample, step);
+        if to == from || !self.problem.is_free(&from, &to) {
             return;
         }
         let node = self.tree.push(to, parent);
-        for goal in 0..self.query.goals.len() {
-            let end = self.query.goals[goal];
+        for goal in 0..self.problem.goals.len() {
+            let end = self.problem.goals[goal];
             if end == to {
                 self.found = Some((node, goal, Stop::Reached));
                 return;
             }
-            if distance(&to, &end) <= self.query.config.step_length && self.query.is_free(&to, &end)
-            {
+            if distance(&to, &end) <= step && self.problem.is_free(&to, &end) {
                 let node = self.tree.push(end, node);
                 self.found = Some((node, goal, Stop::Reached));
                 return;
@@ -139,17 +128,11 @@ impl<'a, const D: usize, M: MotionValidator<D>> Rrt<'a, D, M> {
     }
 
     fn plan(&self, stop: Stop) -> Plan<D> {
-        let path = self.found.map(|(node, _, _)| {
+        let found = self.found.map(|(node, goal, _)| {
             let chain = self.tree.ancestry(node);
-            Path::from_vertices(chain.iter().rev().map(|&n| *self.tree.point(n)).collect())
+            let points = chain.iter().rev().map(|&n| *self.tree.point(n)).collect();
+            (Path::from_vertices(points), goal)
         });
-        Plan {
-            path,
-            goal: self.found.map(|(_, goal, _)| self.query.goal_index[goal]),
-            stop,
-            iterations: self.query.iterations,
-            nodes: self.tree.len(),
-            checks: self.query.checks,
-        }
+        self.problem.plan(found, stop, self.tree.len())
     }
 }

@@ -8,12 +8,10 @@
 
 use rand::Rng;
 
-use super::query::Query;
+use super::problem::{Problem, Search};
 use super::tree::Tree;
-use super::{Plan, PlanError, Progress, RrtConfig, Stop};
-use crate::bounds::Bounds;
-use crate::euclid::{PointLike, steer};
-use crate::goals::Goals;
+use super::{Plan, PlanError, Progress, Query, RrtConfig, Stop};
+use crate::euclid::steer;
 use crate::motion::MotionValidator;
 use crate::path::Path;
 
@@ -21,11 +19,11 @@ use crate::path::Path;
 ///
 /// ```
 /// use rand_pcg::Pcg64;
-/// use rrt_refine::{Bounds, RrtConfig, Stop, rrt_connect};
+/// use rrt_refine::{Bounds, Query, RrtConfig, Stop, rrt_connect};
 ///
-/// let bounds = Bounds::new([0.0; 3], [4.0, 4.0, 2.0])?;
+/// let query = Query::new([1.0; 3], [3.0, 3.0, 1.0], Bounds::new([0.0; 3], [4.0, 4.0, 2.0])?);
 /// let open = |_: &[f64; 3], _: &[f64; 3]| true;
-/// let plan = rrt_connect([1.0; 3], [3.0, 3.0, 1.0], &bounds, &open, &RrtConfig::default(), &mut Pcg64::new(1, 1))?;
+/// let plan = rrt_connect(&query, &open, &RrtConfig::default(), &mut Pcg64::new(1, 1))?;
 /// assert_eq!(plan.stop, Stop::Straight);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -33,20 +31,17 @@ use crate::path::Path;
 /// # Errors
 /// A parameter out of range; a start or goal that is not finite, outside the bounds or (the start, or all goals) not free.
 pub fn rrt_connect<const D: usize>(
-    start: impl PointLike<D>,
-    goals: impl Into<Goals<D>>,
-    bounds: &Bounds<D>,
+    query: &Query<D>,
     motion_is_free: &impl MotionValidator<D>,
     config: &RrtConfig,
     rng: &mut impl Rng,
 ) -> Result<Plan<D>, PlanError> {
-    let mut search = RrtConnect::new(start, goals, bounds, motion_is_free, config)?;
-    Ok(search.advance(rng, |_| false))
+    Ok(RrtConnect::new(query, motion_is_free, config)?.advance(rng, |_| false))
 }
 
 /// An RRT-Connect search that can be stopped by a closure and taken up again.
 pub struct RrtConnect<'a, const D: usize, M> {
-    query: Query<'a, D, M>,
+    problem: Problem<'a, D, M>,
     from_start: Tree<D>,
     from_goals: Tree<D>,
     start_grows: bool,
@@ -67,53 +62,41 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtConnect<'a, D, M> {
     /// # Errors
     /// As [`rrt_connect`].
     pub fn new(
-        start: impl PointLike<D>,
-        goals: impl Into<Goals<D>>,
-        bounds: &Bounds<D>,
+        query: &Query<D>,
         motion_is_free: &'a M,
         config: &RrtConfig,
     ) -> Result<Self, PlanError> {
-        let query = Query::new(start, &goals.into(), bounds, motion_is_free, config)?;
-        let from_start = Tree::with_roots(&[query.start]);
-        let from_goals = Tree::with_roots(&query.goals);
-        let found = query
-            .goals
-            .iter()
-            .position(|goal| *goal == query.start)
-            .map(|goal| (0, goal, Stop::Straight));
+        let problem = Problem::new(query, motion_is_free, config)?;
         Ok(Self {
-            query,
-            from_start,
-            from_goals,
+            from_start: Tree::with_roots(&[problem.start]),
+            from_goals: Tree::with_roots(&problem.goals),
             start_grows: true,
-            found,
+            found: problem
+                .goal_at_start()
+                .map(|goal| (0, goal, Stop::Straight)),
+            problem,
         })
     }
 
     /// Grows the trees until they meet, `stop` returns true, or `max_iterations` more samples are drawn.
     ///
     /// `stop` is asked before each sample; read a clock in it for a budget of time.
-    pub fn advance(
-        &mut self,
-        rng: &mut impl Rng,
-        mut stop: impl FnMut(&Progress) -> bool,
-    ) -> Plan<D> {
-        if self.query.begins_straight() {
-            self.try_straight();
-        }
-        let mut left = self.query.config.max_iterations;
-        let reason = loop {
-            if let Some((_, _, how)) = self.found {
-                break how;
-            }
-            let nodes = self.nodes();
-            if let Some(reason) = self.query.spend(&mut left, nodes, None, &mut stop) {
-                break reason;
-            }
-            self.grow(rng);
-            self.start_grows = !self.start_grows;
-        };
-        self.plan(reason)
+    pub fn advance(&mut self, rng: &mut impl Rng, stop: impl FnMut(&Progress) -> bool) -> Plan<D> {
+        self.run(rng, stop)
+    }
+}
+
+impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for RrtConnect<'a, D, M> {
+    fn problem(&mut self) -> &mut Problem<'a, D, M> {
+        &mut self.problem
+    }
+
+    fn settled(&self) -> Option<Stop> {
+        self.found.map(|(_, _, how)| how)
+    }
+
+    fn best_length(&self) -> Option<f64> {
+        None
     }
 
     fn nodes(&self) -> usize {
@@ -121,81 +104,70 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtConnect<'a, D, M> {
     }
 
     fn try_straight(&mut self) {
-        if self.found.is_none()
-            && let Some(goal) = self.query.straight_goal()
-        {
-            let node = self.from_start.push(self.query.goals[goal], 0);
+        if let Some(goal) = self.problem.straight_goal() {
+            let node = self.from_start.push(self.problem.goals[goal], 0);
             self.found = Some((node, goal, Stop::Straight));
         }
     }
 
-    /// One sample: extend one tree, let the other connect.
+    /// One tree steps towards a sample, the other walks to where it came; the next time the other way round.
     fn grow(&mut self, rng: &mut impl Rng) {
-        let query = &mut self.query;
-        let room = query.config.max_nodes;
-        if self.start_grows {
-            let sample = query.sample(&query.goals, rng);
-            let Some(node) = extend(query, &mut self.from_start, &sample, Travel::Away) else {
-                return;
-            };
-            let target = *self.from_start.point(node);
-            let room = room.saturating_sub(self.from_start.len());
-            if let Some(other) = connect(query, &mut self.from_goals, &target, Travel::Home, room) {
-                self.found = Some((node, other, Stop::Reached));
-            }
+        let problem = &mut self.problem;
+        let (start_grows, other_way) = (self.start_grows, !self.start_grows);
+        self.start_grows = other_way;
+        let (stepping, walking, travel) = if start_grows {
+            (&mut self.from_start, &mut self.from_goals, Travel::Away)
         } else {
-            let sample = query.sample(&[query.start], rng);
-            let Some(node) = extend(query, &mut self.from_goals, &sample, Travel::Home) else {
-                return;
+            (&mut self.from_goals, &mut self.from_start, Travel::Home)
+        };
+        let sample = if start_grows {
+            problem.sample(&problem.goals, rng)
+        } else {
+            problem.sample(&[problem.start], rng)
+        };
+        let nearest = stepping.nearest(&sample);
+        let Some(node) = step(problem, stepping, nearest, &sample, travel) else {
+            return;
+        };
+        let target = *stepping.point(node);
+        let room = problem.config.max_nodes.saturating_sub(stepping.len());
+        if let Some(other) = walk(problem, walking, &target, travel.back(), room) {
+            let (start_side, goal_side) = if start_grows {
+                (node, other)
+            } else {
+                (other, node)
             };
-            let target = *self.from_goals.point(node);
-            let room = room.saturating_sub(self.from_goals.len());
-            if let Some(other) = connect(query, &mut self.from_start, &target, Travel::Away, room) {
-                self.found = Some((other, node, Stop::Reached));
-            }
+            self.found = Some((start_side, goal_side, Stop::Reached));
         }
     }
 
     fn plan(&self, stop: Stop) -> Plan<D> {
-        let mut goal = None;
-        let path = self.found.map(|(near_start, near_goal, _)| {
-            let up = self.from_start.ancestry(near_start);
-            let down = self.from_goals.ancestry(near_goal);
-            goal = down.last().map(|&root| self.query.goal_index[root]);
-            let mut points: Vec<[f64; D]> = up
-                .iter()
-                .rev()
-                .map(|&node| *self.from_start.point(node))
-                .collect();
+        let found = self.found.map(|(start_side, goal_side, _)| {
+            let up = self.from_start.ancestry(start_side);
+            let down = self.from_goals.ancestry(goal_side);
+            let before = up.iter().rev().map(|&node| *self.from_start.point(node));
             // Both trees hold the meeting point.
-            points.extend(down[1..].iter().map(|&node| *self.from_goals.point(node)));
-            Path::from_vertices(points)
+            let after = down[1..].iter().map(|&node| *self.from_goals.point(node));
+            // The goals are the roots, in their order.
+            let goal = down[down.len() - 1];
+            (Path::from_vertices(before.chain(after).collect()), goal)
         });
-        Plan {
-            path,
-            goal,
-            stop,
-            iterations: self.query.iterations,
-            nodes: self.nodes(),
-            checks: self.query.checks,
+        self.problem.plan(found, stop, self.nodes())
+    }
+}
+
+impl Travel {
+    fn back(self) -> Self {
+        match self {
+            Travel::Away => Travel::Home,
+            Travel::Home => Travel::Away,
         }
     }
 }
 
-/// One step of the tree towards `target`; the new node, or `None` where it is blocked or already there.
-fn extend<const D: usize, M: MotionValidator<D>>(
-    query: &mut Query<'_, D, M>,
-    tree: &mut Tree<D>,
-    target: &[f64; D],
-    travel: Travel,
-) -> Option<usize> {
-    let parent = tree.nearest(target);
-    step(query, tree, parent, target, travel)
-}
-
 /// Steps of the tree towards `target` until it has a node there (given back), is blocked, or `room` nodes are used up.
-fn connect<const D: usize, M: MotionValidator<D>>(
-    query: &mut Query<'_, D, M>,
+fn walk<const D: usize, M: MotionValidator<D>>(
+    problem: &mut Problem<'_, D, M>,
     tree: &mut Tree<D>,
     target: &[f64; D],
     travel: Travel,
@@ -206,26 +178,27 @@ fn connect<const D: usize, M: MotionValidator<D>>(
         if tree.len() >= room {
             return None;
         }
-        node = step(query, tree, node, target, travel)?;
+        node = step(problem, tree, node, target, travel)?;
     }
     Some(node)
 }
 
+/// One step of the tree from the node `parent` towards `target`; the new node, or `None` where it is blocked or already there.
 fn step<const D: usize, M: MotionValidator<D>>(
-    query: &mut Query<'_, D, M>,
+    problem: &mut Problem<'_, D, M>,
     tree: &mut Tree<D>,
     parent: usize,
     target: &[f64; D],
     travel: Travel,
 ) -> Option<usize> {
     let from = *tree.point(parent);
-    let to = steer(&from, target, query.config.step_length);
+    let to = steer(&from, target, problem.config.step_length);
     if to == from {
         return None;
     }
     let free = match travel {
-        Travel::Away => query.is_free(&from, &to),
-        Travel::Home => query.is_free(&to, &from),
+        Travel::Away => problem.is_free(&from, &to),
+        Travel::Home => problem.is_free(&to, &from),
     };
     free.then(|| tree.push(to, parent))
 }

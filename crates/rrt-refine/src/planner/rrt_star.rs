@@ -13,11 +13,9 @@ use rand::{Rng, RngExt};
 
 use super::cost_tree::CostTree;
 use super::informed::sample_ellipsoid;
-use super::query::Query;
-use super::{Plan, PlanError, Progress, RrtStarConfig, Stop};
-use crate::bounds::Bounds;
-use crate::euclid::{PointLike, distance, steer};
-use crate::goals::Goals;
+use super::problem::{Problem, Search};
+use super::{Plan, PlanError, Progress, Query, RrtStarConfig, Stop};
+use crate::euclid::{distance, steer};
 use crate::motion::MotionValidator;
 use crate::path::Path;
 
@@ -27,9 +25,9 @@ use crate::path::Path;
 ///
 /// ```
 /// use rand_pcg::Pcg64;
-/// use rrt_refine::{Bounds, RrtStarConfig, rrt_star};
+/// use rrt_refine::{Bounds, Query, RrtStarConfig, rrt_star};
 ///
-/// let bounds = Bounds::new([0.0, 0.0], [10.0, 10.0])?;
+/// let query = Query::new([1.0, 1.0], [9.0, 1.0], Bounds::new([0.0, 0.0], [10.0, 10.0])?);
 /// // A wall along x = 5 with a gap above y = 8.
 /// let is_free = |a: &[f64; 2], b: &[f64; 2]| {
 ///     let crossing = (5.0 - a[0]) / (b[0] - a[0]);
@@ -37,7 +35,7 @@ use crate::path::Path;
 /// };
 /// let mut config = RrtStarConfig::informed();
 /// config.rrt.max_iterations = 2000;
-/// let plan = rrt_star([1.0, 1.0], [9.0, 1.0], &bounds, &is_free, &config, &mut Pcg64::new(1, 1))?;
+/// let plan = rrt_star(&query, &is_free, &config, &mut Pcg64::new(1, 1))?;
 /// let shortest = 2.0 * (4.0_f64 * 4.0 + 7.0 * 7.0).sqrt();
 /// assert!(plan.length().is_some_and(|length| length < 1.02 * shortest));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -46,20 +44,17 @@ use crate::path::Path;
 /// # Errors
 /// A parameter out of range; a start or goal that is not finite, outside the bounds or (the start, or all goals) not free.
 pub fn rrt_star<const D: usize>(
-    start: impl PointLike<D>,
-    goals: impl Into<Goals<D>>,
-    bounds: &Bounds<D>,
+    query: &Query<D>,
     motion_is_free: &impl MotionValidator<D>,
     config: &RrtStarConfig,
     rng: &mut impl Rng,
 ) -> Result<Plan<D>, PlanError> {
-    let mut search = RrtStar::new(start, goals, bounds, motion_is_free, config)?;
-    Ok(search.advance(rng, |_| false))
+    Ok(RrtStar::new(query, motion_is_free, config)?.advance(rng, |_| false))
 }
 
 /// An anytime RRT* search: each call of [`advance`](RrtStar::advance) improves the path further.
 pub struct RrtStar<'a, const D: usize, M> {
-    query: Query<'a, D, M>,
+    problem: Problem<'a, D, M>,
     config: RrtStarConfig,
     tree: CostTree<D>,
     /// Node at each goal, once there is one.
@@ -74,70 +69,30 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
     /// # Errors
     /// As [`rrt_star`].
     pub fn new(
-        start: impl PointLike<D>,
-        goals: impl Into<Goals<D>>,
-        bounds: &Bounds<D>,
+        query: &Query<D>,
         motion_is_free: &'a M,
         config: &RrtStarConfig,
     ) -> Result<Self, PlanError> {
         config.validate()?;
-        let query = Query::new(start, &goals.into(), bounds, motion_is_free, &config.rrt)?;
-        let goal_nodes: Vec<Option<usize>> = query
-            .goals
-            .iter()
-            .map(|goal| (*goal == query.start).then_some(0))
-            .collect();
+        let problem = Problem::new(query, motion_is_free, &config.rrt)?;
+        let mut goal_nodes = vec![None; problem.goals.len()];
+        if let Some(goal) = problem.goal_at_start() {
+            goal_nodes[goal] = Some(0);
+        }
         Ok(Self {
-            tree: CostTree::with_root(query.start),
+            tree: CostTree::with_root(problem.start),
             straight: goal_nodes.contains(&Some(0)),
             config: *config,
             goal_nodes,
-            query,
+            problem,
         })
     }
 
     /// Grows and improves the tree until `stop` returns true, `max_iterations` more samples are drawn, or no path can be shorter.
     ///
     /// `stop` is asked before each sample; read a clock in it for a budget of time, or compare `Progress::length`.
-    pub fn advance(
-        &mut self,
-        rng: &mut impl Rng,
-        mut stop: impl FnMut(&Progress) -> bool,
-    ) -> Plan<D> {
-        if self.query.begins_straight() {
-            self.try_straight();
-        }
-        let mut left = self.query.config.max_iterations;
-        let reason = loop {
-            if self.straight {
-                break Stop::Straight;
-            }
-            let best = self.best().map(|(_, length)| length);
-            let nodes = self.tree.len();
-            if let Some(reason) = self.query.spend(&mut left, nodes, best, &mut stop) {
-                break reason;
-            }
-            self.grow(rng);
-        };
-        self.plan(reason)
-    }
-
-    /// Only when the nearest goal is seen straight away is no path shorter.
-    fn try_straight(&mut self) {
-        if self.straight {
-            return;
-        }
-        if let Some(goal) = self.query.straight_goal() {
-            let node = self.tree.push(self.query.goals[goal], 0);
-            self.goal_nodes[goal] = Some(node);
-            let length = self.tree.cost(node);
-            let start = self.query.start;
-            self.straight = self
-                .query
-                .goals
-                .iter()
-                .all(|other| length <= distance(&start, other));
-        }
+    pub fn advance(&mut self, rng: &mut impl Rng, stop: impl FnMut(&Progress) -> bool) -> Plan<D> {
+        self.run(rng, stop)
     }
 
     /// The goal whose path is shortest, and its length.
@@ -149,52 +104,29 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// One sample.
-    fn grow(&mut self, rng: &mut impl Rng) {
-        let sample = self.draw(rng);
-        let nearest = self.tree.nearest(&sample);
-        let from = *self.tree.point(nearest);
-        let to = steer(&from, &sample, self.config.rrt.step_length);
-        if to == from || !self.can_improve(&to) {
-            return;
-        }
-        let Some(node) = self.insert(to) else { return };
-        for goal in 0..self.goal_nodes.len() {
-            let end = self.query.goals[goal];
-            if self.goal_nodes[goal].is_some() {
-                continue;
-            }
-            if end == to {
-                self.goal_nodes[goal] = Some(node);
-            } else if distance(&to, &end) <= self.config.rrt.step_length {
-                self.goal_nodes[goal] = self.insert(end);
-            }
-        }
-    }
-
     /// A goal without a path for the share `goal_bias`; else a point that can shorten the best path, or any.
     fn draw(&self, rng: &mut impl Rng) -> [f64; D] {
-        let query = &self.query;
+        let problem = &self.problem;
         let best = self.best().map_or(f64::INFINITY, |(_, length)| length);
-        let improvable = |goal: &&[f64; D]| distance(&query.start, goal) < best;
-        let missing: Vec<[f64; D]> = (0..query.goals.len())
+        let improvable = |goal: &&[f64; D]| distance(&problem.start, goal) < best;
+        let missing: Vec<[f64; D]> = (0..problem.goals.len())
             .filter(|&goal| self.goal_nodes[goal].is_none())
-            .map(|goal| query.goals[goal])
+            .map(|goal| problem.goals[goal])
             .filter(|goal| improvable(&goal))
             .collect();
         if !self.config.informed || best == f64::INFINITY {
-            return query.sample(&missing, rng);
+            return problem.sample(&missing, rng);
         }
-        if rng.random::<f64>() < query.config.goal_bias && !missing.is_empty() {
+        if rng.random::<f64>() < problem.config.goal_bias && !missing.is_empty() {
             return missing[rng.random_range(0..missing.len())];
         }
-        let targets: Vec<&[f64; D]> = query.goals.iter().filter(improvable).collect();
+        let targets: Vec<&[f64; D]> = problem.goals.iter().filter(improvable).collect();
         match targets.len() {
-            0 => query.bounds.sample(rng),
-            1 => sample_ellipsoid(&query.start, targets[0], best, &query.bounds, rng),
+            0 => problem.bounds.sample(rng),
+            1 => sample_ellipsoid(&problem.start, targets[0], best, &problem.bounds, rng),
             many => {
                 let target = targets[rng.random_range(0..many)];
-                sample_ellipsoid(&query.start, target, best, &query.bounds, rng)
+                sample_ellipsoid(&problem.start, target, best, &problem.bounds, rng)
             }
         }
     }
@@ -203,13 +135,13 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
     fn can_improve(&self, point: &[f64; D]) -> bool {
         !self.config.informed
             || self.best().is_none_or(|(_, best)| {
-                let start = &self.query.start;
+                let start = &self.problem.start;
                 distance(start, point) + self.to_nearest_goal(point) < best
             })
     }
 
     fn to_nearest_goal(&self, point: &[f64; D]) -> f64 {
-        self.query
+        self.problem
             .goals
             .iter()
             .map(|goal| distance(point, goal))
@@ -225,7 +157,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
             let cost = self.tree.cost(node) + gap;
             if other != parent && cost < self.tree.cost(other) {
                 let end = *self.tree.point(other);
-                if self.query.is_free(&point, &end) {
+                if self.problem.is_free(&point, &end) {
                     self.tree.set_parent(other, node);
                 }
             }
@@ -248,7 +180,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
             .take_while(|&(_, cost)| cost < limit)
             .find(|&(node, _)| {
                 let from = *self.tree.point(node);
-                self.query.is_free(&from, point)
+                self.problem.is_free(&from, point)
             })
             .map(|(node, _)| node)
     }
@@ -261,17 +193,64 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
             .ceil()
             .max(1.0) as usize
     }
+}
+
+impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for RrtStar<'a, D, M> {
+    fn problem(&mut self) -> &mut Problem<'a, D, M> {
+        &mut self.problem
+    }
+
+    fn settled(&self) -> Option<Stop> {
+        self.straight.then_some(Stop::Straight)
+    }
+
+    fn best_length(&self) -> Option<f64> {
+        self.best().map(|(_, length)| length)
+    }
+
+    fn nodes(&self) -> usize {
+        self.tree.len()
+    }
+
+    /// Only when the nearest goal is seen straight away is no path shorter.
+    fn try_straight(&mut self) {
+        if let Some(goal) = self.problem.straight_goal() {
+            let node = self.tree.push(self.problem.goals[goal], 0);
+            self.goal_nodes[goal] = Some(node);
+            let length = self.tree.cost(node);
+            let goals = self.problem.goals.iter();
+            let mut gaps = goals.map(|other| distance(&self.problem.start, other));
+            self.straight = gaps.all(|gap| length <= gap);
+        }
+    }
+
+    fn grow(&mut self, rng: &mut impl Rng) {
+        let sample = self.draw(rng);
+        let nearest = self.tree.nearest(&sample);
+        let from = *self.tree.point(nearest);
+        let to = steer(&from, &sample, self.config.rrt.step_length);
+        if to == from || !self.can_improve(&to) {
+            return;
+        }
+        let Some(node) = self.insert(to) else { return };
+        for goal in 0..self.goal_nodes.len() {
+            let end = self.problem.goals[goal];
+            if self.goal_nodes[goal].is_some() {
+                continue;
+            }
+            if end == to {
+                self.goal_nodes[goal] = Some(node);
+            } else if distance(&to, &end) <= self.config.rrt.step_length {
+                self.goal_nodes[goal] = self.insert(end);
+            }
+        }
+    }
 
     fn plan(&self, stop: Stop) -> Plan<D> {
-        let best = self.best().map(|(goal, _)| goal);
-        let node = best.and_then(|goal| self.goal_nodes[goal]);
-        Plan {
-            path: node.map(|node| Path::from_vertices(self.tree.way_to(node))),
-            goal: best.map(|goal| self.query.goal_index[goal]),
-            stop,
-            iterations: self.query.iterations,
-            nodes: self.tree.len(),
-            checks: self.query.checks,
-        }
+        let found = self.best().and_then(|(goal, _)| {
+            let way = self.tree.way_to(self.goal_nodes[goal]?);
+            Some((Path::from_vertices(way), goal))
+        });
+        self.problem.plan(found, stop, self.tree.len())
     }
 }

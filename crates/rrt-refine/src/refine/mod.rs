@@ -2,10 +2,10 @@
 //!
 //! | refiner | vertices of the result | idempotent |
 //! | --- | --- | --- |
-//! | [`dag()`] (default) | some of the input's, chosen optimally | yes |
+//! | [`dag()`] | some of the input's, chosen optimally | yes |
 //! | [`dag_by_cost`] | some of the input's, chosen optimally for a cost such as [`ClearanceCost`] | yes |
 //! | [`greedy()`] | some of the input's, farthest first | yes |
-//! | [`taut()`] (shortest for few checks) | anywhere on the path as it tightens | yes, unless the rounds ran out |
+//! | [`taut()`] (default: `dag`, then corners cut) | anywhere on the path as it tightens | yes, unless the rounds ran out |
 //! | [`rope()`] | anywhere on the path as it tightens | yes, unless the budget ran out |
 //! | [`shortcut()`] | anywhere on the path, at random | no |
 //! | [`round_corners`] | arcs in place of corners, under a clearance | yes |

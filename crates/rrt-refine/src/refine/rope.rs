@@ -8,7 +8,7 @@ use super::visibility_graph::{Known, cheapest_way};
 use super::{RefineError, RefineStop, Refined, dag};
 use crate::euclid::distance;
 use crate::motion::MotionValidator;
-use crate::path::Path;
+use crate::path::{Path, PathError};
 
 /// Parameters of [`rope()`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,13 +41,16 @@ impl RopeConfig {
     }
 }
 
+/// Most places that a path is cut into: the time grows with their square.
+const MOST_PLACES: usize = 10_000;
+
 /// Tightens `path` to near the shortest path of its kind (around the same obstacles on the same sides).
 ///
 /// Starts from the result of [`dag()`], whose checks, repeated on the few vertices after each round, are not limited by `max_checks`. Every motion of a changed path is
 /// checked, parts of old segments too. Never longer than the input; idempotent when it ends with [`RefineStop::Done`].
 ///
 /// # Errors
-/// A parameter out of range, or a step so small that more than ten million vertices were needed.
+/// A parameter out of range, or a step so small that more than ten thousand vertices were needed.
 pub fn rope<const D: usize>(
     path: &Path<D>,
     motion_is_free: &impl MotionValidator<D>,
@@ -58,6 +61,11 @@ pub fn rope<const D: usize>(
     let (mut best, mut checks) = (first.path, first.checks);
     let mut left = config.max_checks;
     let stop = loop {
+        let needed = best.length() / config.max_step + best.points().len() as f64;
+        if needed > MOST_PLACES as f64 {
+            let limit = MOST_PLACES;
+            return Err(PathError::TooMany { needed, limit }.into());
+        }
         let dense = best.densified(config.max_step)?;
         let points = dense.points();
         let bound = best.length() * (1.0 - config.min_gain);

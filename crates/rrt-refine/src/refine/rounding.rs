@@ -133,6 +133,10 @@ impl<M, C> Rounding<'_, M, C> {
                 return Some(arc);
             }
             cut /= 2.0;
+            // Nothing is left to halve, in the digits of the corner.
+            if arc.first() == arc.last() {
+                break;
+            }
         }
         None
     }

@@ -137,6 +137,9 @@ fn largest_free(bisections: usize, mut is_free: impl FnMut(f64) -> bool) -> f64 
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..bisections {
         let middle = (low + high) / 2.0;
+        if middle <= low || middle >= high {
+            break;
+        }
         if is_free(middle) {
             low = middle;
         } else {

@@ -8,7 +8,7 @@
 
 use std::path::PathBuf;
 
-use rrt_refine::Bounds;
+use rrt_refine::{Bounds, Query};
 use serde_json::Value;
 
 /// Closed axis-aligned boxes that a ball of `radius` must not touch.
@@ -85,7 +85,7 @@ fn squared_at(from: &[f64; 3], to: &[f64; 3], min: &[f64; 3], max: &[f64; 3], t:
 }
 
 /// The synthetic apartment with its true walls and furniture, and its start and goal pairs; `None` without the data folder.
-pub(crate) fn apartment() -> Option<(BoxWorld, Vec<[[f64; 3]; 2]>)> {
+pub(crate) fn apartment() -> Option<(BoxWorld, Vec<Query<3>>)> {
     let folder = std::env::var("EXPLORER_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
     let file = PathBuf::from(folder).join("data/synthetic-apartment/apt_10k_o15.scene.json");
@@ -114,7 +114,7 @@ pub(crate) fn apartment() -> Option<(BoxWorld, Vec<[[f64; 3]; 2]>)> {
     };
     let queries = list(&scene["queries"])
         .iter()
-        .map(|q| [point(&q[0]), point(&q[1])])
+        .map(|q| Query::new(point(&q[0]), point(&q[1]), world.bounds))
         .collect();
     Some((world, queries))
 }

@@ -3,8 +3,8 @@
 use rand::SeedableRng as _;
 use rand_pcg::Pcg64;
 use rrt_refine::{
-    Bounds, MotionValidator, Path, PlanError, Refined, RrtConfig, RrtStarConfig, Stop, refine, rrt,
-    rrt_connect, rrt_star,
+    Bounds, MotionValidator, Path, PlanError, Query, Refined, RrtConfig, RrtStarConfig, Stop,
+    refine, rrt, rrt_connect, rrt_star,
 };
 use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Space, kmeans};
 
@@ -286,7 +286,7 @@ fn search(
     free: &impl MotionValidator<3>,
     rng: &mut Pcg64,
 ) -> Result<rrt_refine::Plan<3>, PlanError> {
-    let &Question { from, to, .. } = question;
+    let query = Query::new(question.from, question.to, *bounds);
     let config = RrtConfig {
         step_length: STEP_M * question.units_per_meter,
         ..RrtConfig::default()
@@ -296,15 +296,15 @@ fn search(
         ..base
     };
     match question.planner {
-        Planner::Rrt => rrt(from, to, bounds, free, &config, rng),
-        Planner::RrtConnect => rrt_connect(from, to, bounds, free, &config, rng),
+        Planner::Rrt => rrt(&query, free, &config, rng),
+        Planner::RrtConnect => rrt_connect(&query, free, &config, rng),
         Planner::RrtStar => {
             let config = star(RrtStarConfig::default());
-            rrt_star(from, to, bounds, free, &config, rng)
+            rrt_star(&query, free, &config, rng)
         }
         Planner::InformedRrtStar => {
             let config = star(RrtStarConfig::informed());
-            rrt_star(from, to, bounds, free, &config, rng)
+            rrt_star(&query, free, &config, rng)
         }
     }
 }
