@@ -1,6 +1,5 @@
 #![doc = include_str!("../README.md")]
 
-mod atlas;
 pub mod baseline;
 mod calibration;
 mod config;
@@ -14,7 +13,6 @@ mod simulation;
 mod stage;
 mod telemetry;
 
-pub use atlas::{Atlas, KnownLimits, Portal, PortalState, Site};
 pub use calibration::{Calibration, MoveKind};
 pub use config::{ConfigError, ExplorationConfig, MissionConfig, PerceptionConfig};
 pub use heading::LevelPose;

@@ -203,7 +203,7 @@ impl Scene {
             .collect()
     }
 
-    /// Looks for exits around `pose`; `map` tells where the camera looked.
+    /// Looks for exits around `pose`; `map` tells where the camera looked, the points `closed` stand in openings that have been used.
     ///
     /// # Errors
     /// Too few points around the agent, or a degenerate plane.
@@ -211,6 +211,7 @@ impl Scene {
         &self,
         map: &Map,
         pose: &LevelPose,
+        closed: &[[f64; 3]],
         config: &MissionConfig,
     ) -> Result<ExitReport, SceneError> {
         let plane = AffinePlane::from_up(pose.up.into(), pose.position.into())?;
@@ -218,7 +219,7 @@ impl Scene {
         let view = ExitView {
             heading: Some(pose.forward.into()),
             gazes: &gazes,
-            virtual_points: &[],
+            virtual_points: closed,
         };
         let need = 2.0 * config.planning_radius_m();
         let exits = ExitConfig {

@@ -40,8 +40,9 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Anchors a world point to the nearest of the keyframes (the lowest number on a tie).
-    pub(crate) fn new(world: [f64; 3], keyframes: &[KeyframePose]) -> Self {
+    /// Anchors a world point to the nearest of the keyframes (the lowest number on a tie); to the world
+    /// where there is none.
+    pub fn new(world: [f64; 3], keyframes: &[KeyframePose]) -> Self {
         let nearest = keyframes.iter().min_by(|a, b| {
             distance(a.position, world)
                 .total_cmp(&distance(b.position, world))
@@ -60,7 +61,7 @@ impl Anchor {
     }
 
     /// The point under corrected poses; `None` when its keyframe is gone.
-    pub(crate) fn resolve(&self, keyframes: &[KeyframePose]) -> Option<[f64; 3]> {
+    pub fn resolve(&self, keyframes: &[KeyframePose]) -> Option<[f64; 3]> {
         let Some(id) = self.keyframe else {
             return Some(self.local);
         };

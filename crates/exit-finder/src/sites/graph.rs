@@ -1,11 +1,11 @@
 //! The graph: admission of exits as portals, their states, map corrections.
 
-use super::anchor::{Anchor, KeyframePose};
+use super::anchor::KeyframePose;
+use super::correction::{check_poses, hang, site_marks};
 use super::error::SiteError;
 use super::portal::{Portal, PortalId, PortalState};
 use super::site::{Site, SiteId};
 use crate::exit::{Exit, ExitReport};
-use crate::plane::AffinePlane;
 use crate::vector::{add, distance, is_finite, scale, sub};
 
 /// Distances of the graph, all in map units.
@@ -115,6 +115,13 @@ pub struct SiteGraph {
     entered: Option<PortalId>,
 }
 
+impl Default for SiteGraph {
+    /// An empty graph of epoch 0 for a map in metres.
+    fn default() -> Self {
+        Self::empty(SiteConfig::for_scale(1.0))
+    }
+}
+
 impl SiteGraph {
     /// An empty graph of epoch 0.
     ///
@@ -122,15 +129,34 @@ impl SiteGraph {
     /// [`SiteError::Config`].
     pub fn new(config: SiteConfig) -> Result<Self, SiteError> {
         config.validate()?;
-        let (sites, portals, links) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Self {
+        Ok(Self::empty(config))
+    }
+
+    fn empty(config: SiteConfig) -> Self {
+        Self {
             config,
             epoch: 0,
-            sites,
-            portals,
-            links,
+            sites: Vec::new(),
+            portals: Vec::new(),
+            links: Vec::new(),
             entered: None,
-        })
+        }
+    }
+
+    /// Takes other distances from now on: the scale of a monocular map is known better with every metre flown. What was admitted
+    /// stays.
+    ///
+    /// # Errors
+    /// [`SiteError::Config`]; the former distances stay then.
+    pub fn set_config(&mut self, config: SiteConfig) -> Result<(), SiteError> {
+        config.validate()?;
+        self.config = config;
+        Ok(())
+    }
+
+    /// The epoch all coordinates belong to.
+    pub fn epoch(&self) -> u64 {
+        self.epoch
     }
 
     /// All sites in the order of scanning.
@@ -141,6 +167,18 @@ impl SiteGraph {
     /// All portals in the order of discovery.
     pub fn portals(&self) -> &[Portal] {
         &self.portals
+    }
+
+    /// The portals nobody went through, in the order of discovery: for a caller that knows the true lengths of the ways and chooses
+    /// by itself. [`Self::next_portal`] chooses by lengths as the crow flies.
+    pub fn unvisited(&self) -> impl Iterator<Item = &Portal> {
+        let open = |portal: &&Portal| portal.state == PortalState::Unvisited;
+        self.portals.iter().filter(open)
+    }
+
+    /// Whether an earlier site saw past this place by more than the shrinkage: it is explored.
+    pub fn is_explored(&self, place: [f64; 3]) -> bool {
+        self.explorer_of(place).is_some()
     }
 
     /// Adds the place of a report as a site, linked to the site the agent came from, and its exits as
@@ -224,38 +262,6 @@ impl SiteGraph {
             .collect()
     }
 
-    /// Moves everything with its keyframe after a correction of the map; returns how many sites and
-    /// portals stayed where they were because their keyframe is gone.
-    ///
-    /// # Errors
-    /// [`SiteError::Pose`]; nothing has moved then.
-    pub fn reanchor(&mut self, keyframes: &[KeyframePose]) -> Result<usize, SiteError> {
-        check_poses(keyframes)?;
-        let resolve = |anchors: &[Anchor; 3]| {
-            let [a, b, c] = anchors.map(|anchor| anchor.resolve(keyframes));
-            Some([a?, b?, c?])
-        };
-        let mut lost = 0;
-        for site in &mut self.sites {
-            match resolve(&site.anchors) {
-                Some([position, first, second]) => {
-                    let axes = [sub(first, position), sub(second, position)];
-                    site.position = position;
-                    // A rigid motion keeps the axes orthonormal up to rounding.
-                    site.plane = AffinePlane::from_basis(position, axes).unwrap_or(site.plane);
-                }
-                None => lost += 1,
-            }
-        }
-        for portal in &mut self.portals {
-            match resolve(&portal.anchors) {
-                Some([a, b, exit]) => (portal.jambs, portal.exit) = ([a, b], exit),
-                None => lost += 1,
-            }
-        }
-        Ok(lost)
-    }
-
     /// Starts a new epoch: the map was reset and all coordinates are void.
     pub fn reset(&mut self, epoch: u64) {
         self.epoch = epoch;
@@ -268,13 +274,7 @@ impl SiteGraph {
     fn refusal(&self, exit: &Exit, history: &History<'_>) -> Option<Refusal> {
         let config = &self.config;
         let known = self.known(exit).map(Refusal::Known);
-        let explored = || {
-            let site = self
-                .sites
-                .iter()
-                .find(|site| site.contains(exit.position, config.shrink));
-            site.map(|site| Refusal::Explored(site.id))
-        };
+        let explored = || self.explorer_of(exit.position).map(Refusal::Explored);
         let within = |reach: f64| move |p: [f64; 3]| distance(p, exit.position) < reach;
         let flown = || {
             history
@@ -290,6 +290,13 @@ impl SiteGraph {
             (config.crowd > 0 && count >= config.crowd).then_some(Refusal::AmongKeyframes)
         };
         known.or_else(explored).or_else(flown).or_else(crowded)
+    }
+
+    /// The first site whose shrunk polygon holds the place.
+    fn explorer_of(&self, place: [f64; 3]) -> Option<SiteId> {
+        let mut sites = self.sites.iter();
+        let site = sites.find(|site| site.contains(place, self.config.shrink))?;
+        Some(site.id)
     }
 
     fn known(&self, exit: &Exit) -> Option<PortalId> {
@@ -334,7 +341,7 @@ impl SiteGraph {
             exit: exit.position,
             score: exit.score,
             state: PortalState::Unvisited,
-            anchors: [a, b, exit.position].map(|p| Anchor::new(p, keyframes)),
+            anchors: hang([a, b, exit.position], keyframes),
         });
         id
     }
@@ -382,26 +389,12 @@ const MOST_VIRTUAL: usize = 4096;
 
 fn new_site(id: SiteId, report: &ExitReport, keyframes: &[KeyframePose]) -> Site {
     let (position, plane) = (report.profile.agent, report.profile.plane);
-    // All three points hang on the keyframe nearest to the position, so that they move rigidly.
-    let nearest: Vec<KeyframePose> = Anchor::new(position, keyframes)
-        .keyframe
-        .and_then(|id| keyframes.iter().find(|pose| pose.id == id).copied())
-        .into_iter()
-        .collect();
-    let [first, second] = plane.axes().map(|axis| add(position, axis));
-    let anchors = [position, first, second].map(|p| Anchor::new(p, &nearest));
+    let anchors = hang(site_marks(position, &plane), keyframes);
     Site {
         id,
         position,
         plane,
         polygon: Site::polygon_of(report),
         anchors,
-    }
-}
-
-fn check_poses(keyframes: &[KeyframePose]) -> Result<(), SiteError> {
-    match keyframes.iter().find(|pose| !pose.is_rigid()) {
-        Some(pose) => Err(SiteError::Pose { keyframe: pose.id }),
-        None => Ok(()),
     }
 }

@@ -37,6 +37,7 @@
 //! coordinates: [`SiteGraph::reset`].
 
 mod anchor;
+mod correction;
 mod error;
 mod graph;
 mod portal;

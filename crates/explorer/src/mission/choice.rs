@@ -1,5 +1,6 @@
 //! Which place to fly to next: through an exit, nearer to one, to a place that no scan saw, to the edge of what is proven, or home.
 
+use exit_finder::sites::PortalId;
 use nalgebra::Point3;
 use sparse_to_obstacles::VoxelState;
 
@@ -7,7 +8,6 @@ use super::context::Context;
 use super::event::Goal;
 use super::fly::Arrival;
 use super::survey::Survey;
-use crate::atlas::PortalState;
 use crate::heading::LevelPose;
 use crate::reach::Reach;
 use crate::scene::Scene;
@@ -51,7 +51,13 @@ pub(super) fn next_choice(
     let mut best: Option<(f64, Choice)> = None;
     let mut blocked = Vec::new();
     let survey = Survey::new(context.shared, scene, reach, pose);
-    for portal in context.atlas.unvisited() {
+    let open: Vec<PortalId> = context
+        .explored
+        .graph()
+        .unvisited()
+        .map(|portal| portal.id)
+        .collect();
+    for portal in open {
         match portal_choice(context, scene, reach, portal) {
             Some(choice) => {
                 let gain = portal_gain(context, scene, &survey, (portal, &choice, reach));
@@ -74,7 +80,7 @@ pub(super) fn next_choice(
     }
     let choice = best.map(|(_, choice)| choice).or_else(|| survey.edges());
     for portal in blocked {
-        block(context, portal);
+        context.explored.block(portal);
     }
     choice.or_else(|| far_choice(context, scene, reach))
 }
@@ -96,10 +102,10 @@ fn portal_gain(
     context: &Context<'_>,
     scene: &Scene,
     survey: &Survey<'_>,
-    (portal, choice, reach): (usize, &Choice, &Reach),
+    (portal, choice, reach): (PortalId, &Choice, &Reach),
 ) -> f64 {
-    let through = context.atlas.portals().get(portal).map(|p| p.through);
-    let seen = through.is_some_and(|place| scene.free.state(place.into()) == VoxelState::Free);
+    let portal = context.explored.portal(portal);
+    let seen = portal.is_some_and(|portal| scene.free.state(portal.exit) == VoxelState::Free);
     if choice.goal == Goal::Through {
         let behind = reach.position(choice.place);
         let area = behind.map_or(0.0, |place| survey.unseen_near(&place));
@@ -113,14 +119,17 @@ fn portal_choice(
     context: &Context<'_>,
     scene: &Scene,
     reach: &Reach,
-    portal: usize,
+    portal: PortalId,
 ) -> Option<Choice> {
     let exploration = &context.config.exploration;
-    let entry = context.atlas.portals().get(portal)?;
-    if entry.failures >= exploration.failures + entry.approaches {
+    let (entry, attempts) = (
+        context.explored.portal(portal)?,
+        context.explored.attempts(portal),
+    );
+    if attempts.failures >= exploration.failures + attempts.approaches {
         return None;
     }
-    let (place, left) = nearest_view(scene, reach, &entry.through)?;
+    let (place, left) = nearest_view(scene, reach, &entry.exit.into())?;
     if left < scene.units(exploration.arrival_m) {
         let place = behind(context, scene, reach, portal).unwrap_or(place);
         return is_fresh(context, scene, reach, place).then_some(Choice {
@@ -129,14 +138,17 @@ fn portal_choice(
             arrival: Arrival::Site(Some(portal)),
         });
     }
-    let progress = entry.closest - left;
-    if entry.approaches >= exploration.approaches
+    let progress = attempts.closest - left;
+    if attempts.approaches >= exploration.approaches
         || progress < scene.units(exploration.least_progress_m)
     {
         return None;
     }
-    let newest = entry.site + 1 == context.atlas.sites().len();
-    let goal = if newest { Goal::Approach } else { Goal::Return };
+    let goal = if context.explored.is_newest(entry) {
+        Goal::Approach
+    } else {
+        Goal::Return
+    };
     Some(Choice {
         place,
         goal,
@@ -150,18 +162,18 @@ fn is_fresh(context: &Context<'_>, scene: &Scene, reach: &Reach, place: usize) -
     let Some(place) = reach.position(place) else {
         return false;
     };
-    let mut sites = context.atlas.sites().iter();
-    !sites.any(|site| (site.position - place).norm() < near && scene.sees(&site.position, &place))
+    let mut sites = context.explored.sites();
+    !sites.any(|site| (site - place).norm() < near && scene.sees(&site, &place))
 }
 
 /// The roomiest reached place some way behind a portal, or else at it: from a doorway a scan shows less than from the room.
-fn behind(context: &Context<'_>, scene: &Scene, reach: &Reach, portal: usize) -> Option<usize> {
-    let entry = context.atlas.portals().get(portal)?;
-    let site = context.atlas.sites().get(entry.site)?;
-    let ahead = (entry.through - site.position).try_normalize(f64::EPSILON)?;
+fn behind(context: &Context<'_>, scene: &Scene, reach: &Reach, portal: PortalId) -> Option<usize> {
+    let through = Point3::from(context.explored.portal(portal)?.exit);
+    let site = Point3::from(context.explored.finder_of(portal)?.position);
+    let ahead = (through - site).try_normalize(f64::EPSILON)?;
     let arrival = context.config.exploration.arrival_m;
     DEPTHS_M.into_iter().find_map(|depth| {
-        let target = entry.through + ahead * scene.units(depth);
+        let target = through + ahead * scene.units(depth);
         roomiest(scene, reach, &target, arrival)
     })
 }
@@ -214,9 +226,10 @@ fn far_choice(context: &Context<'_>, scene: &Scene, reach: &Reach) -> Option<Cho
         .map_or(1.0, |(_, share)| share);
     let far = scene.units(share * context.config.exploration.far_distance_m);
     let (place, cost) = reach.best(|place| {
-        let sites = context.atlas.sites().iter().map(|site| site.position);
-        let nearest = sites
-            .chain(context.tried.iter().copied())
+        let nearest = context
+            .explored
+            .sites()
+            .chain(context.explored.tried())
             .map(|site| (site - place.position).norm())
             .fold(f64::INFINITY, f64::min);
         if nearest < far {
@@ -230,12 +243,6 @@ fn far_choice(context: &Context<'_>, scene: &Scene, reach: &Reach) -> Option<Cho
         goal: Goal::Unseen,
         arrival: Arrival::Site(None),
     })
-}
-
-fn block(context: &mut Context<'_>, portal: usize) {
-    if let Some(portal) = context.atlas.portal_mut(portal) {
-        portal.state = PortalState::Blocked;
-    }
 }
 
 /// The reached place nearest to where the drone took off, if that is near enough to land there.

@@ -6,6 +6,7 @@ use nalgebra::Point3;
 use rand_pcg::Pcg64;
 
 use super::event::{Event, Logged};
+use super::explored::Explored;
 use super::knowledge::Knowledge;
 use super::landing::Landing;
 use super::maneuver::Maneuver;
@@ -13,7 +14,6 @@ use super::outcome::Outcome;
 use super::phase::{Phase, Step};
 use super::pilot::{CommandOutcome, Finished};
 use super::record::{Cycle, Scan};
-use crate::atlas::Atlas;
 use crate::config::MissionConfig;
 use crate::scene::Scene;
 use crate::stage::StageObserver;
@@ -25,8 +25,8 @@ pub(super) struct Shared {
     pub(super) config: MissionConfig,
     pub(super) knowledge: Knowledge,
     pub(super) rng: Pcg64,
-    pub(super) atlas: Atlas,
-    /// Epoch that the atlas and the scene belong to.
+    pub(super) explored: Explored,
+    /// Epoch that what was explored and the scene belong to.
     pub(super) epoch: Option<u64>,
     pub(super) scene: Option<Arc<Scene>>,
     pub(super) map: Option<Map>,
@@ -36,8 +36,6 @@ pub(super) struct Shared {
     /// Whether the drone still obeys sticks that are not at rest.
     pub(super) sticks_held: bool,
     pub(super) scans: Vec<Scan>,
-    /// Places that no site had seen and that a flight was planned to, map units.
-    pub(super) tried: Vec<Point3<f64>>,
     /// Why the drone is on its way home, if it is.
     pub(super) homing: Option<Outcome>,
     /// Flights home so far.
@@ -166,10 +164,9 @@ impl Shared {
     pub(super) fn follow_epoch(&mut self) {
         let epoch = self.knowledge.epoch();
         if self.epoch.is_some_and(|known| known != epoch) {
-            self.atlas = Atlas::default();
-            self.tried.clear();
             self.scene = None;
         }
+        self.explored.follow_epoch(epoch);
         self.epoch = Some(epoch);
     }
 

@@ -8,6 +8,7 @@
 use core::f64::consts::{FRAC_PI_4, PI};
 
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
+use sparse_to_obstacles::VoxelState;
 
 use super::context::Shared;
 use crate::heading::LevelPose;
@@ -139,7 +140,8 @@ fn all_edges(
         for ahead in &directions {
             let beyond = place.position + ahead * length;
             let (from, to) = (place.position.into(), beyond.into());
-            if !scene.sees(&place.position, &beyond)
+            if !is_known(shared, scene, &beyond)
+                && !scene.sees(&place.position, &beyond)
                 && scene.obstacles.motion_is_free(from, to, radius)
             {
                 edges.push(Edge {
@@ -152,6 +154,13 @@ fn all_edges(
         }
     }
     edges
+}
+
+/// Whether a place is proven free or well inside what a scan saw all around: what lies between is a gap in the proof, and leads nowhere
+/// new.
+fn is_known(shared: &Shared, scene: &Scene, place: &Point3<f64>) -> bool {
+    let place = (*place).into();
+    scene.free.state(place) == VoxelState::Free || shared.explored.graph().is_explored(place)
 }
 
 /// The camera's positions and axes of this epoch, thinned.

@@ -2,6 +2,7 @@
 
 use core::f64::consts::PI;
 
+use exit_finder::sites::PortalId;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use tello_sdk::{Command, Distance, Speed, Waypoint};
 
@@ -13,7 +14,6 @@ use super::phase::{Phase, Step};
 use super::recover::Recover;
 use super::scan::Scan;
 use super::think::Think;
-use crate::atlas::PortalState;
 use crate::heading::LevelPose;
 use crate::route::Route;
 use crate::scene::Scene;
@@ -53,11 +53,11 @@ pub(super) enum Arrival {
     /// Land.
     Home,
     /// Turn on the spot: a new site. The portal that was flown through, if any.
-    Site(Option<usize>),
+    Site(Option<PortalId>),
     /// Look at the place behind this portal, which then is this many map units away.
     Look {
-        /// Index of the portal.
-        portal: usize,
+        /// The portal.
+        portal: PortalId,
         /// Distance left, map units.
         left: f64,
     },
@@ -174,8 +174,8 @@ pub(super) fn arrive(
     match arrival {
         Arrival::Home => Some(context.land(context.homing.clone().unwrap_or(Outcome::Explored))),
         Arrival::Site(portal) => {
-            if let Some(portal) = portal.and_then(|index| context.atlas.portal_mut(index)) {
-                portal.state = PortalState::Traversed;
+            if let Some(portal) = portal {
+                context.explored.traverse(portal);
             }
             Some(Step::Become(Phase::Scan(Scan::full())))
         }
@@ -185,11 +185,14 @@ pub(super) fn arrive(
 
 /// Looks at the place behind a portal from here, `left` map units away, and notes that it did; `None` when there is nothing to
 /// turn to and no room to climb, so that a look would show nothing new.
-fn look_at(context: &mut Context<'_>, pose: &LevelPose, portal: usize, left: f64) -> Option<Step> {
-    let portal = context.atlas.portal_mut(portal)?;
-    portal.approaches += 1;
-    portal.closest = portal.closest.min(left);
-    let through = portal.through;
+fn look_at(
+    context: &mut Context<'_>,
+    pose: &LevelPose,
+    portal: PortalId,
+    left: f64,
+) -> Option<Step> {
+    context.explored.note_approach(portal, left);
+    let through = context.explored.portal(portal)?.exit.into();
     let towards = pose.turn_to(&through);
     let towards = context
         .scene

@@ -12,6 +12,7 @@ mod choice;
 mod context;
 mod edge;
 mod event;
+mod explored;
 mod facing;
 mod fly;
 mod initialize;
@@ -36,11 +37,11 @@ use rand_pcg::Pcg64;
 use slam_bridge::{Map, SlamUpdate};
 use tello_sdk::{Command, Telemetry};
 
-use crate::atlas::Atlas;
 use crate::config::{ConfigError, MissionConfig};
 use crate::stage::StageObserver;
 use context::{Context, Shared};
 pub use event::{Event, Goal, Logged};
+use explored::Explored;
 use knowledge::Knowledge;
 pub use knowledge::TrailPose;
 use landing::Landing;
@@ -107,7 +108,7 @@ impl Mission {
             config,
             knowledge: Knowledge::default(),
             rng: Pcg64::seed_from_u64(seed),
-            atlas: Atlas::default(),
+            explored: Explored::default(),
             epoch: None,
             scene: None,
             map: None,
@@ -115,7 +116,6 @@ impl Mission {
             failures: 0,
             sticks_held: false,
             scans: Vec::new(),
-            tried: Vec::new(),
             homing: None,
             home_flights: 0,
             triangle_flown: None,
@@ -204,7 +204,7 @@ impl Mission {
             outcome: self.shared.outcome.as_ref(),
             scans: &self.shared.scans,
             cycles: &self.shared.cycles,
-            atlas: &self.shared.atlas,
+            sites: self.shared.explored.graph(),
             scene: self.shared.scene.as_deref(),
             trail: self.shared.knowledge.trail(),
             meters_per_unit: self.shared.knowledge.meters_per_unit(),

@@ -3,12 +3,12 @@
 use core::time::Duration;
 
 use exit_finder::ExitReport;
+use exit_finder::sites::SiteGraph;
 use nalgebra::Point3;
 
 use super::event::{Goal, Logged};
 use super::knowledge::TrailPose;
 use super::outcome::Outcome;
-use crate::atlas::Atlas;
 use crate::scene::Scene;
 
 /// One turn on the spot.
@@ -52,8 +52,8 @@ pub struct MissionRecord<'a> {
     pub scans: &'a [Scan],
     /// All cycles, oldest first.
     pub cycles: &'a [Cycle],
-    /// Sites and exits of the present epoch.
-    pub atlas: &'a Atlas,
+    /// Sites and portals of the present epoch.
+    pub sites: &'a SiteGraph,
     /// The last scene.
     pub scene: Option<&'a Scene>,
     /// Every tracked frame.

@@ -17,7 +17,7 @@ use crate::reach::{Place, Reach};
 use crate::scene::Scene;
 
 /// A scan shows floor up to this distance, metres.
-const SIGHT_M: f64 = 4.5;
+pub(super) const SIGHT_M: f64 = 4.5;
 /// A scan is taken to show unseen places within this distance, metres.
 const UNSEEN_RANGE_M: f64 = 2.0;
 /// Unseen places compared for the next scan at most.
@@ -111,13 +111,11 @@ impl<'a> Survey<'a> {
         let (shared, scene) = (self.shared, self.scene);
         let open = open_edges(shared, scene, self.pose, &self.floor);
         let apart = scene.units(VANTAGE_M);
-        let sites = shared.atlas.sites();
+        let explored = &shared.explored;
         let is_new = |place: &Point3<f64>| {
-            let near_site = sites
-                .iter()
-                .any(|site| (site.position - place).norm() < apart);
-            let tries = shared.tried.iter();
-            let in_vain = tries.filter(|tried| (*tried - place).norm() < 0.5 * apart);
+            let near_site = explored.sites().any(|site| (site - place).norm() < apart);
+            let tries = explored.tried();
+            let in_vain = tries.filter(|tried| (tried - place).norm() < 0.5 * apart);
             !near_site && in_vain.count() < shared.config.exploration.failures
         };
         let candidates: Vec<&(usize, Place)> = self
@@ -151,11 +149,11 @@ impl<'a> Survey<'a> {
     fn is_new(&self, place: &Point3<f64>) -> bool {
         let exploration = &self.shared.config.exploration;
         let apart = self.scene.units(exploration.site_distance_m);
-        let mut sites = self.shared.atlas.sites().iter();
-        let near_site = sites.any(|site| (site.position - place).norm() < apart);
-        let tries = self.shared.tried.iter();
-        let in_vain = tries
-            .filter(|tried| (*tried - place).norm() < 0.5 * apart)
+        let explored = &self.shared.explored;
+        let near_site = explored.sites().any(|site| (site - place).norm() < apart);
+        let in_vain = explored
+            .tried()
+            .filter(|tried| (tried - place).norm() < 0.5 * apart)
             .count();
         !near_site && in_vain < exploration.failures
     }
@@ -164,6 +162,6 @@ impl<'a> Survey<'a> {
 /// Whether a scan saw this place.
 fn is_seen(shared: &Shared, scene: &Scene, place: &Point3<f64>) -> bool {
     let range = scene.units(SIGHT_M);
-    let mut sites = shared.atlas.sites().iter();
-    sites.any(|site| (site.position - place).norm() < range && scene.sees(&site.position, place))
+    let mut sites = shared.explored.sites();
+    sites.any(|site| (site - place).norm() < range && scene.sees(&site, place))
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 
 use super::choice::{Choice, home_choice, next_choice};
 use super::context::Context;
@@ -13,7 +13,7 @@ use super::phase::{Phase, Step};
 use super::record::Cycle;
 use super::recover::Recover;
 use super::scan::Scan;
-use crate::atlas::KnownLimits;
+use super::survey::SIGHT_M;
 use crate::heading::LevelPose;
 use crate::reach::{Reach, ReachLimits};
 use crate::route::{Route, RouteRadii};
@@ -62,12 +62,16 @@ impl Think {
         let Some(map) = context.map.take() else {
             return Step::NeedMap;
         };
+        context.explored.follow_map(&map);
         let Some(scene) = look(context, &map, &pose) else {
             return self.failed(context);
         };
         let exits = self.site.then(|| {
+            let sight = scene.units(SIGHT_M);
+            let graph = context.shared.explored.graph();
+            let closed = graph.virtual_points(pose.position.into(), sight);
             let report = staged(context.stages, Stage::Exits, || {
-                scene.exits(&map, &pose, &context.shared.config)
+                scene.exits(&map, &pose, &closed, &context.shared.config)
             });
             report.ok()
         });
@@ -90,7 +94,7 @@ impl Think {
         exits: Option<exit_finder::ExitReport>,
     ) -> Step {
         if let Some(report) = &exits {
-            register(context, pose, &scene, report);
+            register(context, &scene, report);
         }
         context.log(Event::Perceived {
             points: scene.points.len(),
@@ -135,7 +139,7 @@ impl Think {
                 Some(step) => return step,
                 // Before giving up, one more look around from wherever the drone has come to.
                 None if context.scans.len() < LEAST_SCANS || is_unscanned(context, scene, pose) => {
-                    context.shared.tried.push(pose.position);
+                    context.explored.note_tried(pose.position);
                     return Step::Become(Phase::Scan(Scan::full()));
                 }
                 None => context.homing = Some(Outcome::Explored),
@@ -175,8 +179,8 @@ impl Think {
 /// Whether no scan was made or tried near here.
 fn is_unscanned(context: &Context<'_>, scene: &Scene, pose: &LevelPose) -> bool {
     let near = scene.units(UNSCANNED_M);
-    let sites = context.atlas.sites().iter().map(|site| site.position);
-    let mut known = sites.chain(context.tried.iter().copied());
+    let explored = &context.explored;
+    let mut known = explored.sites().chain(explored.tried());
     !known.any(|place| (place - pose.position).norm() < near)
 }
 
@@ -281,11 +285,13 @@ fn plan(
 fn note_attempt(context: &mut Context<'_>, reach: &Reach, choice: &Choice) {
     match choice.arrival {
         Arrival::Site(Some(portal)) | Arrival::Look { portal, .. } => {
-            if let Some(portal) = context.atlas.portal_mut(portal) {
-                portal.failures += 1;
+            context.explored.note_failure(portal);
+        }
+        Arrival::Site(None) => {
+            if let Some(place) = reach.position(choice.place) {
+                context.explored.note_tried(place);
             }
         }
-        Arrival::Site(None) => context.shared.tried.extend(reach.position(choice.place)),
         Arrival::Home => {}
     }
 }
@@ -344,29 +350,19 @@ fn presence(context: &Context<'_>, pose: &LevelPose, meters_per_unit: f64) -> Ve
     places
 }
 
-fn register(
-    context: &mut Context<'_>,
-    pose: &LevelPose,
-    scene: &Scene,
-    report: &exit_finder::ExitReport,
-) {
-    let exploration = &context.shared.config.exploration;
-    let limits = KnownLimits {
-        path: scene.units(exploration.known_distance_m),
-        shrink: scene.units(exploration.known_shrink_m),
-    };
-    let epoch = context.shared.knowledge.epoch();
-    let trail = context
-        .shared
-        .knowledge
-        .trail()
-        .iter()
+fn register(context: &mut Context<'_>, scene: &Scene, report: &exit_finder::ExitReport) {
+    let shared = &mut *context.shared;
+    let epoch = shared.knowledge.epoch();
+    let frames = shared.knowledge.trail().iter();
+    let trail: Vec<[f64; 3]> = frames
         .filter(|frame| frame.epoch == epoch)
-        .map(|frame| Point3::from(frame.world_from_camera.translation.vector));
-    context
-        .shared
-        .atlas
-        .add_site(pose.position, report, trail, &limits);
+        .map(|frame| frame.world_from_camera.translation.vector.into())
+        .collect();
+    let exploration = &shared.config.exploration;
+    // What is refused was made in another epoch: the next scan will be in this one.
+    let _refused = shared
+        .explored
+        .register(report, &trail, exploration, scene.meters_per_unit);
 }
 
 /// The places that the drone can reach, in a band about the height of the first scan.
