@@ -8,7 +8,7 @@ use edge_slam::edge::{
     CannyConfig, JunctionConfig, canny, find_junctions, lift_chain, lift_junction, trace_chains,
 };
 use edge_slam::evaluation::{
-    Alignment, ApeConfig, RpeConfig, TimedPose, absolute_pose_error, map_accuracy,
+    AlignBy, Alignment, ApeConfig, RpeConfig, TimedPose, absolute_pose_error, map_accuracy,
     relative_pose_error,
 };
 use edge_slam::feature::KltConfig;
@@ -122,8 +122,10 @@ proptest! {
         let truth: Vec<_> = (0..30).map(pose).collect();
         let estimate: Vec<_> = (20..60).map(pose).collect();
         for alignment in [Alignment::None, Alignment::Se3, Alignment::Sim3] {
-            let config = ApeConfig { alignment, max_difference: 5.0 };
-            let _ = absolute_pose_error(&estimate, &truth, &config);
+            for align_by in [AlignBy::Positions, AlignBy::Poses] {
+                let config = ApeConfig { alignment, align_by, max_difference: 5.0 };
+                let _ = absolute_pose_error(&estimate, &truth, &config);
+            }
         }
         let config = RpeConfig { max_difference: 5.0, ..Default::default() };
         let _ = relative_pose_error(&estimate, &truth, &config);

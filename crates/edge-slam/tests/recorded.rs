@@ -71,6 +71,7 @@ fn a_turning_camera_is_tracked_with_depth() {
     let config = ApeConfig {
         alignment: Alignment::Se3,
         max_difference: 0.02,
+        ..Default::default()
     };
     let ape = absolute_pose_error(&trajectory, &truth, &config).unwrap();
     assert!(ape.translation.rmse < 0.06, "{}", ape.translation.rmse);

@@ -123,6 +123,46 @@ fn a_wall_is_measured_in_the_frame_of_the_truth() {
 }
 
 #[test]
+fn errors_of_a_short_path_do_not_swing_the_map() {
+    let folder = folder("map error short");
+    let input = text(&sequence(folder.join("wall"), 2000));
+    let [truth, _] = trajectories(&folder);
+    // The orientations are right; the positions drift by 4 cm towards the wall over half a metre.
+    let drifted = |k: u32| {
+        let [x, y, z] = place(k);
+        let time = f64::from(k) / 30.0;
+        format!("{time} {} 0 0 0 1\n", line([x, y, z + 0.08 * x]))
+    };
+    let estimate = file(
+        &folder,
+        "drifted.txt",
+        &(0..FRAMES).map(drifted).collect::<String>(),
+    );
+    let far = |k: u32| line([0.04 * f64::from(k) - 0.7, 0.0, WALL]) + "\n";
+    let map = file(&folder, "wall.xyz", &(0..45).map(far).collect::<String>());
+    let measure = |more: &[&str]| {
+        let arguments = ["--align", "se3", "--map", &map, "--sequence", &input];
+        json(&[&["evaluate", &estimate, &truth][..], &arguments, more].concat())
+    };
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let usual = measure(&[]);
+    assert_eq!(
+        (&usual["align_by"], &usual["map"]["align_by"]),
+        (&"positions".into(), &"poses".into())
+    );
+    assert!(number(&usual["map"]["rotation_deg"]) < 1e-6, "{usual}");
+    assert_eq!(number(&usual["map"]["accuracy"]), 1.0, "{usual}");
+    // Positions tilt everything by four degrees: the wall's right end leaves the threshold.
+    let tilted = measure(&["--align-by", "positions"]);
+    assert!(number(&tilted["map"]["rotation_deg"]) > 4.0, "{tilted}");
+    assert!(number(&tilted["map"]["accuracy"]) < 0.8, "{tilted}");
+    assert_eq!(tilted["rmse"], usual["rmse"]);
+    let by_poses = measure(&["--align-by", "poses"]);
+    assert!(number(&by_poses["rmse"]) > number(&usual["rmse"]));
+    assert_eq!(by_poses["map"], usual["map"]);
+}
+
+#[test]
 fn what_cannot_be_measured_is_said_in_a_line() {
     let folder = folder("map error rubbish");
     let wall = sequence(folder.join("wall"), 2000);

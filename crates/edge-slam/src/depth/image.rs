@@ -132,7 +132,7 @@ impl DepthImage {
     #[must_use]
     pub fn bilinear(&self, x: f64, y: f64) -> Option<f64> {
         let near = Neighbourhood::of(x, y, self.width, self.height)?;
-        let ([left, right], [top, bottom]) = (near.columns, near.rows);
+        let ([left, right], [top, bottom]) = (near.columns(), near.rows());
         let corners = [
             self.get(left, top)?,
             self.get(right, top)?,

@@ -13,7 +13,7 @@ use nalgebra::{
 
 use super::EvaluationError;
 
-/// Which freedom an alignment has.
+/// Which freedom an alignment has. What fixes its rotation is [`AlignBy`]'s matter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Alignment {
     /// None: the two trajectories share a frame already.
@@ -23,6 +23,18 @@ pub enum Alignment {
     /// Rotation, translation and scale, for monocular estimates (`evo -as`).
     #[default]
     Sim3,
+}
+
+/// What fixes the rotation of an alignment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AlignBy {
+    /// Positions, which fix it together with scale and translation ([`align_points`]). The default, because published trajectory
+    /// errors are measured so.
+    #[default]
+    Positions,
+    /// Orientations; then scale and translation by positions ([`align_poses`](super::align_poses)). For whatever hangs on the poses
+    /// far from them, such as a map, and for paths that are straight or short against their error.
+    Poses,
 }
 
 /// x -> s R x + t.
@@ -129,8 +141,7 @@ fn columns<P: Copy + Into<[f64; 3]>>(points: &[P]) -> Result<Vec<Vector3<f64>>, 
         .enumerate()
         .map(|(index, &point)| {
             let vector = Vector3::from(point.into());
-            let usable = vector.iter().all(|value| value.abs() < 1e100);
-            if usable {
+            if usable(&vector) {
                 Ok(vector)
             } else {
                 Err(EvaluationError::NonFinite { index })
@@ -139,11 +150,16 @@ fn columns<P: Copy + Into<[f64; 3]>>(points: &[P]) -> Result<Vec<Vector3<f64>>, 
         .collect()
 }
 
+/// Finite, and small enough to be squared and summed.
+pub(super) fn usable(position: &Vector3<f64>) -> bool {
+    position.iter().all(|value| value.abs() < 1e100)
+}
+
 #[expect(
     clippy::cast_precision_loss,
     reason = "counts of samples stay far below 2^53"
 )]
-fn mean(points: &[Vector3<f64>]) -> Vector3<f64> {
+pub(super) fn mean(points: &[Vector3<f64>]) -> Vector3<f64> {
     points.iter().sum::<Vector3<f64>>() / points.len() as f64
 }
 

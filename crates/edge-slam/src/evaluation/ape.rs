@@ -7,10 +7,11 @@
 //! frobenius    ‖Eᵢ − I‖_F on 4x4 matrices: the paper's "ATE", which mixes metres and rotation
 //! ```
 
-use nalgebra::Matrix4;
+use nalgebra::{Isometry3, Matrix4};
 
 use super::{
-    Alignment, ErrorStatistics, EvaluationError, Similarity, TimedPose, align_points, associate,
+    AlignBy, Alignment, ErrorStatistics, EvaluationError, Similarity, TimedPose, align_points,
+    align_poses, associate,
 };
 
 /// How the absolute error is measured.
@@ -18,6 +19,8 @@ use super::{
 pub struct ApeConfig {
     /// Freedom of the alignment; monocular estimates need [`Alignment::Sim3`].
     pub alignment: Alignment,
+    /// What fixes the alignment's rotation. Default: positions, as in published figures.
+    pub align_by: AlignBy,
     /// Greatest difference of two stamps that count as simultaneous, seconds, >= 0. `evo`: 0.01; TUM tools: 0.02.
     pub max_difference: f64,
 }
@@ -26,6 +29,7 @@ impl Default for ApeConfig {
     fn default() -> Self {
         Self {
             alignment: Alignment::Sim3,
+            align_by: AlignBy::default(),
             max_difference: 0.01,
         }
     }
@@ -77,12 +81,7 @@ pub fn absolute_pose_error(
     config: &ApeConfig,
 ) -> Result<AbsolutePoseError, EvaluationError> {
     let pairs = associate(estimate, reference, config.max_difference)?;
-    let source: Vec<_> = pairs.iter().map(|&(i, _)| position(&estimate[i])).collect();
-    let target: Vec<_> = pairs
-        .iter()
-        .map(|&(_, j)| position(&reference[j]))
-        .collect();
-    let alignment = align_points(&source, &target, config.alignment)?;
+    let alignment = align(estimate, reference, &pairs, config)?;
     let mut errors = Vec::with_capacity(pairs.len());
     let mut angles = Vec::with_capacity(pairs.len());
     let mut norms = Vec::with_capacity(pairs.len());
@@ -107,6 +106,26 @@ pub fn absolute_pose_error(
     })
 }
 
-fn position(sample: &TimedPose) -> [f64; 3] {
-    sample.pose.translation.vector.into()
+fn align(
+    estimate: &[TimedPose],
+    reference: &[TimedPose],
+    pairs: &[(usize, usize)],
+    config: &ApeConfig,
+) -> Result<Similarity, EvaluationError> {
+    let paired = pairs
+        .iter()
+        .map(|&(i, j)| (estimate[i].pose, reference[j].pose));
+    let (source, target): (Vec<_>, Vec<_>) = paired.unzip();
+    match config.align_by {
+        AlignBy::Positions => {
+            let [source, target] =
+                [&source, &target].map(|poses| poses.iter().map(position).collect::<Vec<_>>());
+            align_points(&source, &target, config.alignment)
+        }
+        AlignBy::Poses => align_poses(&source, &target, config.alignment),
+    }
+}
+
+fn position(pose: &Isometry3<f64>) -> [f64; 3] {
+    pose.translation.vector.into()
 }

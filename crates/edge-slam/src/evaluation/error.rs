@@ -29,13 +29,23 @@ pub enum EvaluationError {
         /// What is needed.
         needed: usize,
     },
-    /// The points lie on one line or in one place, so that a rotation or scale cannot be told.
+    /// The points lie on one line or in one place, or the orientations cancel, so that a rotation or scale cannot be told.
     #[error(
-        "the alignment is not unique: the trajectory does not leave one line (spread ratio {ratio:e})"
+        "the alignment is not unique: the trajectory does not leave one line or place, or its orientations cancel \
+         (spread ratio {ratio:e})"
     )]
     Degenerate {
         /// Second over first singular value of the cross covariance (or the variance when that is zero).
         ratio: f64,
+    },
+    /// Along the rotation that the orientations give, the positions run the other way.
+    #[error(
+        "the positions run against the orientations (the best scale is {scale:.3}); check that both trajectories \
+         are of the same body, or align by positions"
+    )]
+    Scale {
+        /// Factor that the positions ask for, not positive.
+        scale: f64,
     },
     /// A parameter is outside its range.
     #[error("{name} is {value}, but must be {range}")]

@@ -4,6 +4,7 @@
 //! customary, so that figures can be compared with published ones.
 
 mod align;
+mod align_poses;
 mod ape;
 mod associate;
 mod error;
@@ -12,7 +13,8 @@ mod rpe;
 mod statistics;
 
 pub(crate) use align::rotation_between;
-pub use align::{Alignment, Similarity, align_points};
+pub use align::{AlignBy, Alignment, Similarity, align_points};
+pub use align_poses::align_poses;
 pub use ape::{AbsolutePoseError, ApeConfig, absolute_pose_error};
 pub use associate::associate;
 pub use error::EvaluationError;

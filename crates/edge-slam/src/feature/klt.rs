@@ -4,7 +4,7 @@
 //! d ← d + H⁻¹ Σ G (I₁ − I₂(d)) until they are small. A point is lost when its patch leaves the image, has no texture
 //! in some direction, looks different at the end, or does not come back when tracked backwards.
 
-use crate::image::{GrayView, Pyramid};
+use crate::image::{GrayView, Pyramid, sample_square};
 
 /// Parameters of [`track_points`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,7 +135,7 @@ impl Patch {
         }
         let mut here = start;
         for _ in 0..config.steps.max(1) {
-            sample(to, here, radius, &mut self.wide)?;
+            sample_square(to, here, radius, &mut self.wide)?;
             let [gx, gy] = self.slope();
             let step = [
                 (c * gx - b * gy) / determinant,
@@ -146,7 +146,7 @@ impl Patch {
                 break;
             }
         }
-        sample(to, here, radius, &mut self.wide)?;
+        sample_square(to, here, radius, &mut self.wide)?;
         let pairs = self.grey.iter().zip(&self.wide);
         let difference = pairs
             .map(|(old, new)| f64::from((old - new).abs()))
@@ -155,7 +155,7 @@ impl Patch {
     }
 
     fn describe(&mut self, view: &GrayView<'_>, place: [f64; 2], radius: usize) -> Option<()> {
-        sample(view, place, radius + 1, &mut self.wide)?;
+        sample_square(view, place, radius + 1, &mut self.wide)?;
         let side = 2 * radius + 1;
         let stride = side + 2;
         self.grey.clear();
@@ -192,37 +192,6 @@ fn dot(a: impl Iterator<Item = f32>, b: &[f32]) -> f64 {
         lanes[k % 8] += a * b;
     }
     lanes.iter().map(|&lane| f64::from(lane)).sum()
-}
-
-/// The square of pixels around a sub-pixel place, bilinear; `None` where it leaves the image.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "the range is checked first"
-)]
-fn sample(view: &GrayView<'_>, [x, y]: [f64; 2], radius: usize, into: &mut Vec<f32>) -> Option<()> {
-    let reach = radius as f64;
-    let (right, bottom) = (view.width() as f64 - 2.0, view.height() as f64 - 2.0);
-    if !(x - reach >= 0.0 && y - reach >= 0.0 && x + reach <= right && y + reach <= bottom) {
-        return None;
-    }
-    let (left, top) = (x.floor() as usize - radius, y.floor() as usize - radius);
-    let (a, b) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
-    let [own, east] = [(1.0 - a) * (1.0 - b), a * (1.0 - b)];
-    let [south, corner] = [(1.0 - a) * b, a * b];
-    let side = 2 * radius + 1;
-    into.clear();
-    for row in top..top + side {
-        let [upper, lower] = [row, row + 1].map(|row| &view.row(row)[left..=left + side]);
-        let right = upper[1..].iter().zip(&lower[1..]);
-        let blend = |((p, r), (q, s)): ((&u8, &u8), (&u8, &u8))| {
-            let [p, q, r, s] = [p, q, r, s].map(|&grey| f32::from(grey));
-            own * p + east * q + (south * r + corner * s)
-        };
-        into.extend(upper.iter().zip(lower).zip(right).map(blend));
-    }
-    Some(())
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ mod pyramid;
 mod resize;
 mod view;
 
-pub(crate) use bilinear::Neighbourhood;
+pub(crate) use bilinear::{Neighbourhood, sample_square};
 pub use blur::{BINOMIAL_RADIUS, gaussian_blur};
 pub(crate) use blur::{smooth_with, weights};
 pub use buffer::GrayImage;

@@ -1,5 +1,6 @@
 //! Bilinear resampling of 8-bit images, pixel centres aligned.
 
+use super::bilinear::Between;
 use super::{GrayImage, GrayView};
 use crate::simd::widest;
 
@@ -24,21 +25,20 @@ pub fn resize(view: &GrayView<'_>, width: usize, height: usize) -> GrayImage {
     output
 }
 
-/// For every target index the source index before it and the weight of the one after, in 1/128.
+/// For every target index the first of its neighbours in the source, and the weight of the second one in 1/128: sums of bytes
+/// then fit 16 bits.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     clippy::cast_precision_loss,
-    reason = "clamped to the source's range; images have fewer than 2^32 columns"
+    reason = "shares are in 0..1; sides of images are small"
 )]
 fn taps(source: usize, target: usize) -> Vec<(u32, u16)> {
     let ratio = source as f64 / target as f64;
-    let last = (source - 1) as f64;
     (0..target)
         .map(|index| {
-            let place = ((index as f64 + 0.5) * ratio - 0.5).clamp(0.0, last);
-            let before = place.floor();
-            (before as u32, ((place - before) * 128.0).round() as u16)
+            let near = Between::nearest((index as f64 + 0.5) * ratio - 0.5, source);
+            (near.before as u32, (near.share * 128.0).round() as u16)
         })
         .collect()
 }

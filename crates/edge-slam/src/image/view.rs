@@ -139,8 +139,8 @@ impl<'a> GrayView<'a> {
     #[must_use]
     pub fn bilinear(&self, x: f64, y: f64) -> Option<f64> {
         let near = Neighbourhood::of(x, y, self.width, self.height)?;
-        let ([left, right], rows) = (near.columns, near.rows);
-        let [upper, lower] = rows.map(|y| self.row(y));
+        let [left, right] = near.columns();
+        let [upper, lower] = near.rows().map(|y| self.row(y));
         let corners = [upper[left], upper[right], lower[left], lower[right]];
         Some(near.blend(corners.map(f64::from)))
     }

@@ -9,7 +9,8 @@ mod slam;
 
 pub(crate) use emulate::Emulate;
 pub(crate) use slam::{
-    AlignChoice, DepthChoice, Evaluate, Slam, TelemetryChoice, TrackerChoice, join_model_file,
+    AlignByChoice, AlignChoice, DepthChoice, Evaluate, Slam, TelemetryChoice, TrackerChoice,
+    join_model_file,
 };
 
 /// Explores unknown rooms with a toy drone, and cleans, reads and plans on sparse SLAM maps.

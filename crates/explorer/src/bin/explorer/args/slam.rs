@@ -138,6 +138,10 @@ pub(crate) struct Evaluate {
     /// What the estimate may be moved by before it is compared: monocular ones need sim3, metric ones se3.
     #[arg(long, value_enum, default_value_t = AlignChoice::Sim3)]
     pub(crate) align: AlignChoice,
+    /// What fixes the rotation of that. Unless said: positions for the trajectory, as in published figures, and poses for the map,
+    /// whose far points would swing with what positions leave open. Poses want both trajectories to be of the same camera.
+    #[arg(long, value_enum)]
+    pub(crate) align_by: Option<AlignByChoice>,
     /// Poses up to this many seconds apart are compared.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.01, value_parser = seconds)]
     pub(crate) max_difference: f64,
@@ -165,6 +169,15 @@ pub(crate) enum AlignChoice {
     Se3,
     /// Nothing.
     None,
+}
+
+/// What fixes the rotation of an alignment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AlignByChoice {
+    /// Where the camera was.
+    Positions,
+    /// How it was turned; then scale and translation by where it was.
+    Poses,
 }
 
 fn moment(text: &str) -> Result<f64, String> {

@@ -8,13 +8,13 @@ use std::io::BufReader;
 use std::path::Path;
 
 use edge_slam::evaluation::{
-    AbsolutePoseError, Alignment, ApeConfig, ErrorStatistics, EvaluationError, RpeConfig,
+    AbsolutePoseError, AlignBy, Alignment, ApeConfig, ErrorStatistics, EvaluationError, RpeConfig,
     RpeInterval, TimedPose, absolute_pose_error, relative_pose_error,
 };
 use serde::Serialize;
 use slam_bridge::read_tum;
 
-use crate::args::{AlignChoice, Evaluate, Output};
+use crate::args::{AlignByChoice, AlignChoice, Evaluate, Output};
 use crate::failure::Failure;
 use crate::output::deliver;
 use crate::plot::{AxisPair, Figure, Layer, Shape, Track, color, trajectory};
@@ -31,6 +31,8 @@ struct EvaluateReport {
     scale: f64,
     /// sim3, se3 or none.
     align: &'static str,
+    /// What fixed the rotation of that: positions or poses.
+    align_by: &'static str,
     /// Poses in the estimate's file, and in the reference's.
     poses: [usize; 2],
     /// Absolute rotation error, degrees.
@@ -95,10 +97,20 @@ pub(crate) fn run(arguments: &Evaluate, output: &Output) -> Result<(), Failure> 
             AlignChoice::Se3 => Alignment::Se3,
             AlignChoice::None => Alignment::None,
         },
+        align_by: by(arguments, AlignBy::Positions),
         max_difference: arguments.max_difference,
     };
-    let ape = absolute_pose_error(&estimate, &reference, &config).map_err(failure)?;
-    let map = MapError::measure(arguments, &ape.alignment, &reference)?;
+    let error = |config| absolute_pose_error(&estimate, &reference, &config).map_err(failure);
+    let ape = error(config)?;
+    let map = match arguments.map {
+        Some(_) => {
+            let align_by = by(arguments, AlignBy::Poses);
+            let aligned = error(ApeConfig { align_by, ..config })?;
+            let map = MapError::measure(arguments, &aligned, align_by, &reference)?;
+            map.map(|map| (map, aligned))
+        }
+        None => None,
+    };
     let drift = |interval| drift(&estimate, &reference, interval, &config, &ape);
     let report = EvaluateReport {
         translation: Summary::of(&ape.translation, 1.0),
@@ -109,20 +121,37 @@ pub(crate) fn run(arguments: &Evaluate, output: &Output) -> Result<(), Failure> 
             AlignChoice::Se3 => "se3",
             AlignChoice::None => "none",
         },
+        align_by: name(config.align_by),
         poses: [estimate.len(), reference.len()],
         rotation_deg: Summary::of(&ape.rotation, 1_f64.to_degrees()),
         frobenius: Summary::of(&ape.frobenius, 1.0),
         rpe_frame: drift(RpeInterval::Frames(1)),
         rpe_second: drift(RpeInterval::Seconds(1.0)),
-        map: map.as_ref().map(|map| map.report.clone()),
+        map: map.as_ref().map(|(map, _)| map.report.clone()),
     };
-    let tracks = tracks(&ape, &estimate, &reference);
+    let tracks = |ape| tracks(ape, &estimate, &reference);
     deliver(output, &report, &text(&report), || {
         Ok(match &map {
-            Some(map) => map.figure(&tracks),
-            None => figure(&report, &ape, &tracks),
+            Some((map, aligned)) => map.figure(&tracks(aligned)),
+            None => figure(&report, &ape, &tracks(&ape)),
         })
     })
+}
+
+/// What was asked for, else what is usual for the purpose.
+fn by(arguments: &Evaluate, usual: AlignBy) -> AlignBy {
+    match arguments.align_by {
+        Some(AlignByChoice::Positions) => AlignBy::Positions,
+        Some(AlignByChoice::Poses) => AlignBy::Poses,
+        None => usual,
+    }
+}
+
+fn name(by: AlignBy) -> &'static str {
+    match by {
+        AlignBy::Positions => "positions",
+        AlignBy::Poses => "poses",
+    }
 }
 
 fn read(path: &Path) -> Result<Vec<TimedPose>, Failure> {
@@ -145,7 +174,10 @@ fn failure(error: EvaluationError) -> Failure {
         EvaluationError::TooFewPairs { .. } => {
             "--max-difference allows stamps that are farther apart"
         }
-        EvaluationError::Degenerate { .. } => "use --align none, or a trajectory with a bend",
+        EvaluationError::Degenerate { .. } => {
+            "use --align-by poses, --align none, or a trajectory with a bend"
+        }
+        EvaluationError::Scale { .. } => "use --align-by positions",
         _ => "correct the trajectories",
     };
     Failure::new(error, advice)
@@ -176,11 +208,12 @@ fn drift(
 fn text(report: &EvaluateReport) -> String {
     let error = &report.translation;
     let mut text = format!(
-        "ATE rmse {:.6} m over {} pairs ({} alignment, scale {:.6})\n\
+        "ATE rmse {:.6} m over {} pairs ({} alignment by {}, scale {:.6})\n\
          mean {:.6}, median {:.6}, std {:.6}, min {:.6}, max {:.6} m; rotation rmse {:.3} degrees",
         error.rmse,
         report.pairs,
         report.align,
+        report.align_by,
         report.scale,
         error.mean,
         error.median,

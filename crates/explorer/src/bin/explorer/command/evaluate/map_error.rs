@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use edge_slam::evaluation::{ErrorStatistics, Similarity, TimedPose, map_accuracy};
+use edge_slam::evaluation::{AbsolutePoseError, AlignBy, ErrorStatistics, TimedPose, map_accuracy};
 use rstar::RTree;
 use serde::Serialize;
 
@@ -22,6 +22,11 @@ pub(super) struct MapReport {
     completeness: f64,
     /// Metres.
     threshold: f64,
+    /// What fixed the rotation that the map was moved by (positions or poses), and what the map's lengths were multiplied by.
+    align_by: &'static str,
+    scale: f64,
+    /// Error of the orientations after that, degrees (rmse): far points swing with it.
+    rotation_deg: f64,
     /// From each map point to the nearest one of the surface, metres.
     distance: Summary,
     /// Points of the map, and of the surface (one for each cube of a quarter of the threshold).
@@ -47,7 +52,8 @@ impl MapError {
     /// Measures the map that was named, if one was.
     pub(super) fn measure(
         arguments: &Evaluate,
-        alignment: &Similarity,
+        aligned: &AbsolutePoseError,
+        align_by: AlignBy,
         truth: &[TimedPose],
     ) -> Result<Option<Self>, Failure> {
         let (Some(map), Some(sequence)) = (&arguments.map, &arguments.sequence) else {
@@ -58,7 +64,7 @@ impl MapError {
             scale: None,
         };
         let threshold = arguments.threshold;
-        let moved = |&point: &[f64; 3]| alignment.apply(&point.into()).into();
+        let moved = |&point: &[f64; 3]| aligned.alignment.apply(&point.into()).into();
         let points: Vec<[f64; 3]> = load(&input)?.points.iter().map(moved).collect();
         let (camera, apart) = (arguments.camera, arguments.max_difference);
         let surface = Surface::read(sequence, camera, truth, apart, threshold / CUBES)?;
@@ -85,6 +91,9 @@ impl MapError {
             accuracy: found.accuracy,
             completeness: found.completeness,
             threshold,
+            align_by: super::name(align_by),
+            scale: aligned.alignment.scale,
+            rotation_deg: aligned.rotation.rmse.to_degrees(),
             distance: Summary::of(&statistics, 1.0),
             points: points.len(),
             surface_points: surface.points.len(),
@@ -174,10 +183,14 @@ impl MapReport {
         } = self.distance;
         format!(
             "map: {}\n\
-             distance median {median:.4}, mean {mean:.4}, rmse {rmse:.4} m; surface of {} points from {} depth images",
+             distance median {median:.4}, mean {mean:.4}, rmse {rmse:.4} m; surface of {} points from {} depth images\n\
+             the map was moved by {} (rotation rmse {:.3} degrees, scale {:.6})",
             self.headline(),
             self.surface_points,
-            self.depth_images
+            self.depth_images,
+            self.align_by,
+            self.rotation_deg,
+            self.scale,
         )
     }
 }
