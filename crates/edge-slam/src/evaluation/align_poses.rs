@@ -149,7 +149,7 @@ mod tests {
             let (source, target) = (&source[..n], &target[..n]);
             let cost = |r: &UnitQuaternion<f64>| -> f64 {
                 source.iter().zip(target).map(|(p, q)| {
-                    let [moved, goal] = [r * p.rotation, q.rotation].map(|r| r.to_rotation_matrix());
+                    let [moved, goal] = [r * p.rotation, q.rotation].map(UnitQuaternion::to_rotation_matrix);
                     (moved.matrix() - goal.matrix()).norm_squared()
                 }).sum()
             };
