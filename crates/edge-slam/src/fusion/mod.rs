@@ -1,6 +1,7 @@
 //! Fusion of the drone's own velocity and attitude with visual odometry: an extended Kalman filter whose process
 //! noise grows as the battery empties and as the last visual fix ages.
 
+mod displacement;
 mod ekf;
 mod error;
 mod measurement;
