@@ -177,6 +177,33 @@ mod tests {
     }
 
     #[test]
+    fn bearings_turn_left_seen_from_the_tip_of_up_in_either_convention() {
+        // Looking ahead, left is a quarter turn on: ahead is y and left is −x with z up, ahead is z and left is −x with y down.
+        for (up, ahead) in [
+            ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]),
+            ([0.0, -1.0, 0.0], [0.0, 0.0, 1.0]),
+        ] {
+            let plane = AffinePlane::from_up(up, [0.0; 3]).unwrap();
+            let [before, after] = [ahead, cross(up, ahead)].map(|d| plane.bearing(d).unwrap());
+            assert!(
+                (crate::angle::turn(before, after) - std::f64::consts::FRAC_PI_2).abs() < 1e-12
+            );
+            assert_eq!(cross(up, ahead), [-1.0, 0.0, 0.0]);
+            assert_eq!(plane.bearing(up), None);
+        }
+    }
+
+    #[test]
+    fn the_other_up_mirrors_bearings_and_heights() {
+        let [plane, mirrored] =
+            [1.0, -1.0].map(|sign| AffinePlane::from_up([0.0, -sign, 0.0], [0.0; 3]).unwrap());
+        let p = [2.0, 5.0, 3.0];
+        assert_eq!(plane.height(p), -mirrored.height(p));
+        let [a, b] = [plane, mirrored].map(|plane| plane.bearing(p).unwrap());
+        assert!(crate::angle::turn(a, -b).abs() < 1e-12, "{a} {b}");
+    }
+
+    #[test]
     fn lifting_undoes_projecting() {
         let plane = AffinePlane::from_up([0.3, -0.8, 0.2], [1.0, 2.0, 3.0]).unwrap();
         let q = plane.project(plane.lift([0.7, -1.9]));

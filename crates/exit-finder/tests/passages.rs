@@ -47,8 +47,11 @@ fn across(distance: f64, heights: [f64; 2]) -> Vec<[f64; 3]> {
 
 fn shape_with(behind: &[[f64; 3]]) -> Shape {
     let points = [surroundings(), behind.to_vec()].concat();
-    let agent = [0.0, 0.0, 1.2];
-    let plane = AffinePlane::from_up([0.0, 0.0, 1.0], agent).unwrap();
+    shape_in(&points, [0.0, 0.0, 1.2], [0.0, 0.0, 1.0])
+}
+
+fn shape_in(points: &[[f64; 3]], agent: [f64; 3], up: [f64; 3]) -> Shape {
+    let plane = AffinePlane::from_up(up, agent).unwrap();
     // The rooms that the probability was fitted on have no counters; here only the reading counts.
     let rule = RangeAware {
         min_probability: 0.5,
@@ -58,7 +61,7 @@ fn shape_with(behind: &[[f64; 3]]) -> Shape {
         rule: Rule::RangeAware(rule),
         ..Default::default()
     };
-    let report = find_exits(&points, agent, &plane, &ExitView::default(), &config).unwrap();
+    let report = find_exits(points, agent, &plane, &ExitView::default(), &config).unwrap();
     let best = report.best().unwrap();
     assert!((best.bearing_rad - 1.5 * std::f64::consts::PI).abs() < 0.05);
     let bands = [
@@ -68,7 +71,7 @@ fn shape_with(behind: &[[f64; 3]]) -> Shape {
         [0.0, 0.4],
         [0.4, 0.8],
     ];
-    best.passage(&points, &report, &bands).shape
+    best.passage(points, &report, &bands).shape
 }
 
 #[test]
@@ -98,4 +101,15 @@ fn nothing_seen_below_is_unknown() {
     let points = at_heights(&Walls::default().seen_from([0.0; 2], 8, 1.0), 0..1, 1.0);
     assert!(points.is_empty());
     assert_eq!(shape_with(&across(5.0, [1.6, 2.3])), Shape::Unknown);
+}
+
+#[test]
+fn the_callers_up_tells_a_counter_from_a_lintel() {
+    let counter = [across(2.0, [0.05, 0.75]), across(5.0, [0.8, 2.3])].concat();
+    let world = [surroundings(), counter].concat();
+    // A SLAM map: y down, z forward. A proper rotation, so bearings keep their sense.
+    let camera = |[x, y, z]: [f64; 3]| [x, -z, y];
+    let points: Vec<[f64; 3]> = world.iter().map(|&point| camera(point)).collect();
+    let agent = camera([0.0, 0.0, 1.2]);
+    assert_eq!(shape_in(&points, agent, [0.0, -1.0, 0.0]), Shape::Raised);
 }

@@ -134,11 +134,13 @@ fn a_map_correction_moves_sites_and_portals() {
     let site = &graph.sites()[0];
     assert!((site.position[0] - 10.0).abs() < 1e-9 && (site.position[1] + 0.5).abs() < 1e-9);
     assert!(site.contains([10.0, 0.5, 1.0], 0.3) && !site.contains([0.0, 0.0, 1.0], 0.3));
+    let site_before = site.position;
     assert_eq!(
         graph.reanchor(&[]),
         Ok(3),
         "a lost keyframe leaves everything in place"
     );
+    assert_eq!(graph.sites()[0].position, site_before);
     let broken = pose([f64::NAN; 3], LEVEL);
     assert_eq!(
         graph.reanchor(&broken),
@@ -166,4 +168,81 @@ fn a_new_epoch_forgets_everything() {
         SiteGraph::new(config),
         Err(SiteError::Config { field: "merge", .. })
     ));
+}
+
+#[test]
+fn what_hung_on_a_culled_keyframe_follows_the_nearest_that_is_left() {
+    let mut graph = graph();
+    let pose = |id, position| KeyframePose {
+        id,
+        rotation: LEVEL,
+        position,
+    };
+    let before = [pose(4, AGENT), pose(5, [3.0, 0.0, 1.0])];
+    let history = History {
+        keyframes: &before,
+        ..Default::default()
+    };
+    graph.add_site(&report(&[]), &history).unwrap();
+    let site = graph.sites()[0].position;
+    // Keyframe 4 goes; 5 moves at the same time, which tells nothing about the site.
+    assert!(graph.reanchor(&[pose(5, [3.5, 0.0, 1.0])]).unwrap() >= 1);
+    assert_eq!(graph.sites()[0].position, site);
+    assert_eq!(graph.reanchor(&[pose(5, [3.5, 2.0, 1.0])]), Ok(0));
+    let moved = graph.sites()[0].position;
+    assert!((moved[1] - site[1] - 2.0).abs() < 1e-12, "{moved:?}");
+}
+
+#[test]
+fn a_portal_into_what_a_later_scan_explored_is_exhausted() {
+    // A ring: two doors lead into the same hall, which a scan behind the first one sees.
+    let mut graph = graph();
+    graph.add_site(&report(&[]), &History::default()).unwrap();
+    assert_eq!(graph.unvisited().count(), 2);
+    let mut behind = report(&[]);
+    behind.exits.clear();
+    // The same polygon without its doors reaches through them, to the walls of the hall.
+    let admission = graph.add_site(&behind, &History::default()).unwrap();
+    assert_eq!(admission.exhausted, [PortalId(0), PortalId(1)]);
+    assert!(graph.unvisited().next().is_none() && graph.virtual_points(AGENT, 9.0).is_empty());
+    assert!(graph.is_explored(graph.portals()[0].exit));
+    assert!(!graph.is_explored([50.0, 0.0, 1.0]));
+}
+
+#[test]
+fn other_distances_hold_from_the_next_scan_on() {
+    let mut graph = graph();
+    let flown = [report(&[]).exits[0].position.map(|part| 1.1 * part)];
+    let history = History {
+        trajectory: &flown,
+        ..Default::default()
+    };
+    let mut narrow = graph.clone();
+    narrow
+        .set_config(SiteConfig {
+            flown: 0.01,
+            ..SiteConfig::for_scale(1.0)
+        })
+        .unwrap();
+    assert_eq!(
+        graph
+            .add_site(&report(&[]), &history)
+            .unwrap()
+            .portals
+            .len(),
+        1
+    );
+    assert_eq!(
+        narrow
+            .add_site(&report(&[]), &history)
+            .unwrap()
+            .portals
+            .len(),
+        2
+    );
+    let broken = SiteConfig {
+        shrink: f64::NAN,
+        ..SiteConfig::for_scale(1.0)
+    };
+    assert!(graph.set_config(broken).is_err());
 }

@@ -389,3 +389,30 @@ fn obstacles(
     };
     Ok(ObstacleSet::from_points(solid, &settings, rng)?)
 }
+
+#[cfg(test)]
+impl Scene {
+    /// A scene in metres with these points, in which the balls about `free` are proven free.
+    pub(crate) fn proven(
+        points: Vec<[f64; 3]>,
+        free: &[[f64; 3]],
+        radius: f64,
+        config: &MissionConfig,
+    ) -> Self {
+        use rand::SeedableRng;
+
+        let settings = free_space_config(1.0, config);
+        let mut space = FreeSpace::from_rays([], &points, &settings).unwrap();
+        space.add_balls(free, radius).unwrap();
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
+        Self {
+            obstacles: obstacles(&points, 1.0, &config.perception, &mut rng).unwrap(),
+            kept: (0..points.len()).collect(),
+            removed: Vec::new(),
+            free: space,
+            sight: Sight::new(&Map::default(), &[]),
+            meters_per_unit: 1.0,
+            points,
+        }
+    }
+}

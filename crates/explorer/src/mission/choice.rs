@@ -260,3 +260,122 @@ pub(super) fn home_choice(
         arrival: Arrival::Home,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::Drawn;
+    use super::*;
+    use exit_finder::sites::PortalState;
+
+    /// A room with a door towards +x. Rows of `?` make the room behind it proven or not.
+    fn plan(behind: &str) -> Vec<String> {
+        let rows = [
+            "########################",
+            "#..........#???????????#",
+            "#..........#???????????#",
+            "#..........#???????????#",
+            "#..........????????????#",
+            "#..........????????????#",
+            "#....a.....?????????b??#",
+            "#..........????????????#",
+            "#..........????????????#",
+            "#..........#???????????#",
+            "#..........#???????????#",
+            "#..........#???????????#",
+            "########################",
+        ];
+        rows.iter().map(|row| row.replace('?', behind)).collect()
+    }
+
+    fn drawn(behind: &str) -> Drawn {
+        let rows = plan(behind);
+        Drawn::new(&rows.iter().map(String::as_str).collect::<Vec<_>>())
+    }
+
+    /// The next choice, and where it leads.
+    fn choose(drawn: &mut Drawn) -> Option<(Choice, Point3<f64>)> {
+        let (reach, pose) = (drawn.reach(), drawn.pose());
+        let choice =
+            drawn.with_context(|context, scene| next_choice(context, scene, &reach, &pose))?;
+        let place = reach.position(choice.place).unwrap();
+        Some((choice, place))
+    }
+
+    #[test]
+    fn a_proven_way_leads_through_the_exit_to_a_scan_behind_it() {
+        let mut drawn = drawn(".");
+        let start = drawn.place('a');
+        let portals = drawn.scan(start);
+        assert_eq!(portals.len(), 1, "one door");
+        let (choice, place) = choose(&mut drawn).unwrap();
+        assert_eq!(choice.goal, Goal::Through);
+        assert_eq!(choice.arrival, Arrival::Site(Some(portals[0])));
+        assert!(place.x > 2.2, "{place} is not behind the door");
+    }
+
+    #[test]
+    fn an_exit_behind_which_nothing_is_proven_is_approached_and_then_blocked() {
+        let mut drawn = drawn(" ");
+        let start = drawn.place('a');
+        let portal = drawn.scan(start)[0];
+        let (choice, place) = choose(&mut drawn).unwrap();
+        assert_eq!(choice.goal, Goal::Approach);
+        let Arrival::Look { portal: at, left } = choice.arrival else {
+            panic!("{:?}", choice.arrival);
+        };
+        assert!(at == portal && place.x > start.x && left > 0.0);
+        // A look from there that proves nothing more: no progress is left, so there is no way.
+        drawn.mission.shared.explored.note_approach(portal, left);
+        let next = choose(&mut drawn);
+        assert!(
+            next.is_none_or(|(choice, _)| !matches!(choice.goal, Goal::Approach | Goal::Through))
+        );
+        let state = drawn.mission.shared.explored.portal(portal).unwrap().state;
+        assert_eq!(state, PortalState::Blocked);
+    }
+
+    #[test]
+    fn an_exit_that_no_flight_came_to_is_given_up() {
+        let mut drawn = drawn(".");
+        let start = drawn.place('a');
+        let portal = drawn.scan(start)[0];
+        let failures = drawn.mission.shared.config.exploration.failures;
+        for _ in 0..failures {
+            let (choice, _) = choose(&mut drawn).unwrap();
+            assert_eq!(choice.arrival, Arrival::Site(Some(portal)));
+            drawn.mission.shared.explored.note_failure(portal);
+        }
+        // The room behind is still there to be seen, but no longer as an exit.
+        let (choice, _) = choose(&mut drawn).unwrap();
+        assert_eq!(choice.goal, Goal::Unseen);
+    }
+
+    #[test]
+    fn a_closed_room_that_was_seen_leaves_nothing_after_a_few_more_looks() {
+        let rows = plan("#");
+        let rows: Vec<&str> = rows.iter().map(|row| &row[..12]).collect();
+        let mut drawn = Drawn::new(&rows);
+        let start = drawn.place('a');
+        assert!(drawn.scan(start).is_empty());
+        let mut looks = 0;
+        while let Some((choice, place)) = choose(&mut drawn) {
+            assert_eq!(choice.goal, Goal::Unseen);
+            drawn.mission.shared.explored.note_tried(place);
+            looks += 1;
+            assert!(looks < 20, "it never ends");
+        }
+    }
+
+    #[test]
+    fn home_is_a_goal_only_where_it_can_be_reached() {
+        let mut drawn = drawn(".");
+        let reach = drawn.reach();
+        let inside = drawn.place('b');
+        let outside = Point3::new(9.0, 0.0, 9.0);
+        let [found, lost] = [inside, outside].map(|home| {
+            drawn.with_context(|context, scene| home_choice(context, scene, &reach, &home))
+        });
+        assert_eq!(found.unwrap().goal, Goal::Home);
+        assert!(lost.is_none());
+    }
+}

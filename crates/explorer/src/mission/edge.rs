@@ -20,6 +20,8 @@ pub(super) const VANTAGE_M: f64 = 0.7;
 
 /// How far ahead an edge must be clear of obstacles, metres: past the unproven band before a wall, which is a tenth of its distance.
 const AHEAD_M: f64 = 0.9;
+/// Where there may be known space again, in this length: then the unproven stretch is a gap of the proof, too short for a room.
+const PAST_GAP: [f64; 3] = [1.0, 1.25, 1.5];
 /// Half the width of what must be clear ahead, metres.
 const AHEAD_RADIUS_M: f64 = 0.15;
 /// From nearer an edge is not in view as a whole, from farther its surroundings have no parallax, metres.
@@ -140,7 +142,8 @@ fn all_edges(
         for ahead in &directions {
             let beyond = place.position + ahead * length;
             let (from, to) = (place.position.into(), beyond.into());
-            if !is_known(shared, scene, &beyond)
+            let past = PAST_GAP.map(|share| place.position + ahead * (share * length));
+            if !past.iter().any(|place| is_known(shared, scene, place))
                 && !scene.sees(&place.position, &beyond)
                 && scene.obstacles.motion_is_free(from, to, radius)
             {
@@ -192,4 +195,109 @@ fn points_behind(scene: &Scene, edge: &Edge) -> usize {
             range.contains(&depth) && depth > 0.94 * ray.norm()
         })
         .count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::Drawn;
+    use super::*;
+
+    /// A room whose wall towards +x has a stretch without points: blank, or a doorway. Beyond it nothing is known.
+    const BLANK: [&str; 14] = [
+        "#############      ",
+        "#...........#      ",
+        "#...........#      ",
+        "#...........#      ",
+        "#............      ",
+        "#.a....b.c...      ",
+        "#............      ",
+        "#............      ",
+        "#............      ",
+        "#............      ",
+        "#............      ",
+        "#...........#      ",
+        "#...........#      ",
+        "#############      ",
+    ];
+
+    fn edges(drawn: &mut Drawn) -> Vec<Edge> {
+        let (reach, pose) = (drawn.reach(), drawn.pose());
+        let floor: Vec<(usize, Place)> = reach.places().iter().copied().enumerate().collect();
+        drawn.with_context(|context, scene| open_edges(context.shared, scene, &pose, &floor))
+    }
+
+    #[test]
+    fn edges_lead_to_where_points_and_proof_are_both_missing() {
+        let edges = edges(&mut Drawn::new(&BLANK));
+        assert!(!edges.is_empty());
+        for edge in &edges {
+            assert!(edge.position.x > 1.8, "{} has a wall ahead", edge.position);
+            assert!(edge.ahead.x > 0.6, "{} leads back inside", edge.ahead);
+        }
+    }
+
+    #[test]
+    fn two_looks_from_apart_close_an_edge_and_one_makes_it_less_promising() {
+        let mut drawn = Drawn::new(&BLANK);
+        let straight = |edges: &[Edge]| {
+            let ahead = edges.iter().filter(|edge| edge.ahead.x > 0.99);
+            ahead.map(|edge| edge.weight).sum::<f64>()
+        };
+        // The drone begins at `a` and looks along z: no edge is in view.
+        let fresh = straight(&edges(&mut drawn));
+        let (middle, near) = (drawn.place('b'), drawn.place('c'));
+        drawn.fly_to(middle, &Vector3::x());
+        let once = straight(&edges(&mut drawn));
+        assert!(once < 0.9 * fresh, "{once} of {fresh}");
+        // From nearly the same place it is the same view.
+        drawn.fly_to(near, &Vector3::x());
+        let again = straight(&edges(&mut drawn));
+        let start = drawn.place('a');
+        drawn.fly_to(start, &Vector3::x());
+        let twice = straight(&edges(&mut drawn));
+        assert!(twice < 0.5 * again, "{twice} of {again}");
+    }
+
+    #[test]
+    fn a_gap_of_the_proof_inside_a_known_room_is_no_edge() {
+        let drawn = [
+            "###############",
+            "#.............#",
+            "#.............#",
+            "#.............#",
+            "#.............#",
+            "#..a..  ......#",
+            "#.............#",
+            "#.............#",
+            "#.............#",
+            "#.............#",
+            "###############",
+        ];
+        let open = edges(&mut Drawn::new(&drawn));
+        assert_eq!(open.len(), 0);
+    }
+
+    #[test]
+    fn what_a_scan_saw_all_around_is_no_edge() {
+        // A wide gap: nothing beyond is proven free near the wall, but a scan from `a` saw the wall behind it.
+        let plan = [
+            "###############",
+            "#......       #",
+            "#......       #",
+            "#......       #",
+            "#......       #",
+            "#..a...       #",
+            "#......       #",
+            "#......       #",
+            "#......       #",
+            "###############",
+        ];
+        let mut drawn = Drawn::new(&plan);
+        let open = edges(&mut drawn).len();
+        let start = drawn.place('a');
+        drawn.scan(start);
+        drawn.fly_to(start, &-Vector3::x());
+        let left = edges(&mut drawn).len();
+        assert!(open > 0 && left < open / 2, "{left} of {open}");
+    }
 }

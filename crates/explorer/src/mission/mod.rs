@@ -10,6 +10,8 @@
 
 mod choice;
 mod context;
+#[cfg(test)]
+mod drawn;
 mod edge;
 mod event;
 mod explored;

@@ -165,3 +165,74 @@ fn is_seen(shared: &Shared, scene: &Scene, place: &Point3<f64>) -> bool {
     let mut sites = shared.explored.sites();
     sites.any(|site| (site - place).norm() < range && scene.sees(&site, place))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::Drawn;
+    use super::*;
+
+    /// Two rooms with a door; everything is proven free.
+    const ROOMS: [&str; 16] = [
+        "###########################",
+        "#............#............#",
+        "#............#............#",
+        "#............#............#",
+        "#............#............#",
+        "#.....a......#............#",
+        "#............#............#",
+        "#.........................#",
+        "#...................b.....#",
+        "#.........................#",
+        "#.........................#",
+        "#............#............#",
+        "#............#............#",
+        "#............#............#",
+        "#............#............#",
+        "###########################",
+    ];
+
+    fn survey<T>(drawn: &mut Drawn, ask: impl FnOnce(&Survey<'_>, &Reach) -> T) -> T {
+        let (reach, pose) = (drawn.reach(), drawn.pose());
+        drawn.with_context(|context, scene| {
+            ask(&Survey::new(context.shared, scene, &reach, &pose), &reach)
+        })
+    }
+
+    #[test]
+    fn floor_behind_a_door_is_unseen_until_a_scan_was_made_there() {
+        let mut drawn = Drawn::new(&ROOMS);
+        let (first, second) = (drawn.place('a'), drawn.place('b'));
+        drawn.scan(first);
+        let (area, place) = survey(&mut drawn, |survey, reach| {
+            let (area, place) = survey.unseen().unwrap();
+            (area, reach.position(place).unwrap())
+        });
+        assert!(place.x > 2.8, "{place} lies in the first room");
+        assert!(area > 1.0 && area < 13.0, "{area} m2 within 2 m");
+        drawn.scan(second);
+        assert_eq!(survey(&mut drawn, |survey, _| survey.unseen()), None);
+    }
+
+    #[test]
+    fn a_place_that_was_tried_in_vain_is_left_alone() {
+        let mut drawn = Drawn::new(&ROOMS);
+        let first = drawn.place('a');
+        drawn.scan(first);
+        let mut places = Vec::new();
+        // Every place is tried three times at most, and there are finitely many.
+        for _ in 0..200 {
+            let place = survey(&mut drawn, |survey, reach| {
+                reach.position(survey.unseen()?.1)
+            });
+            let Some(place) = place else { break };
+            drawn.mission.shared.explored.note_tried(place);
+            places.push(place);
+        }
+        assert!((4..200).contains(&places.len()), "{}", places.len());
+        let failures = drawn.mission.shared.config.exploration.failures;
+        for place in &places {
+            let same = places.iter().filter(|other| (*other - place).norm() < 1e-9);
+            assert!(same.count() <= failures);
+        }
+    }
+}
