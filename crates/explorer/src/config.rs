@@ -60,6 +60,9 @@ pub struct PerceptionConfig {
     pub clean: OutlierConfig,
     /// Exit finding; `min_width` is set from the drone's need when the scale is known.
     pub exits: ExitConfig,
+    /// Exits are looked for among the points that keyframes within this distance of the drone saw, metres: a scan's own, with some
+    /// from the way there.
+    pub exit_view_m: f64,
     /// Edge of a proven-free voxel, metres.
     pub voxel_m: f64,
     /// Half opening angle of the cone that a matched feature proves free, radians: a 31 pixel ORB patch at f = 920 pixels
@@ -135,6 +138,7 @@ impl Default for PerceptionConfig {
         Self {
             clean: OutlierConfig::default(),
             exits: ExitConfig::default(),
+            exit_view_m: 1.0,
             voxel_m: 0.10,
             patch_half_angle: 15.0 / 920.0,
             max_triangle_angle: 0.15,
@@ -269,6 +273,7 @@ impl MissionConfig {
 
 impl PerceptionConfig {
     fn validate(&self) -> Result<(), ConfigError> {
+        within("exit_view_m", self.exit_view_m, 0.0, 1e3, "0..=1000 m")?;
         within("voxel_m", self.voxel_m, 0.01, 1.0, "0.01..=1 m")?;
         within(
             "patch_half_angle",

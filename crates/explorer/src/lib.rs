@@ -22,7 +22,7 @@ pub use mission::{
 };
 pub use reach::{Place, Reach, ReachLimits, Room};
 pub use route::{Route, RouteRadii};
-pub use scene::{Presence, Scene, SceneError};
+pub use scene::{ExitSearch, Presence, Scene, SceneError};
 pub use sight::Sight;
 pub use simulation::{FlightSummary, SimulatedFlight, SimulationError};
 pub use stage::{Stage, StageObserver};

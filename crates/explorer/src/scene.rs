@@ -7,6 +7,8 @@
 //!         seen through: blank walls have no points, so hulls alone leak (paper's rule: hulls alone).
 //! Degenerate input: fewer than five points are all kept; a map without observations proves nothing free.
 
+use std::collections::BTreeSet;
+
 use exit_finder::{
     AffinePlane, ExitConfig, ExitError, ExitReport, ExitView, Gaze, PlaneError, find_exits,
 };
@@ -56,6 +58,15 @@ pub struct Scene {
     pub sight: Sight,
     /// Metres per map unit.
     pub meters_per_unit: f64,
+}
+
+/// Exits around a place, and the points among which they were found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExitSearch {
+    /// The exits.
+    pub report: ExitReport,
+    /// Map units.
+    pub cloud: Vec<[f64; 3]>,
 }
 
 /// Why no scene could be made.
@@ -203,7 +214,8 @@ impl Scene {
             .collect()
     }
 
-    /// Looks for exits around `pose`; `map` tells where the camera looked, the points `closed` stand in openings that have been used.
+    /// Looks for exits around `pose` among what was seen from about there: points of other rooms, seen from there, lie behind walls
+    /// like those seen through a door. `map` tells where the camera looked and who saw what, the points `closed` stand in openings that have been used.
     ///
     /// # Errors
     /// Too few points around the agent, or a degenerate plane.
@@ -213,7 +225,7 @@ impl Scene {
         pose: &LevelPose,
         closed: &[[f64; 3]],
         config: &MissionConfig,
-    ) -> Result<ExitReport, SceneError> {
+    ) -> Result<ExitSearch, SceneError> {
         let plane = AffinePlane::from_up(pose.up.into(), pose.position.into())?;
         let gazes = gazes(map);
         let view = ExitView {
@@ -226,13 +238,35 @@ impl Scene {
             min_width: Some(self.units(need)),
             ..config.perception.exits
         };
-        Ok(find_exits(
-            &self.kept_points(),
-            pose.position.into(),
-            &plane,
-            &view,
-            &exits,
-        )?)
+        let find =
+            |points: &[[f64; 3]]| find_exits(points, pose.position.into(), &plane, &view, &exits);
+        let near = self.units(config.perception.exit_view_m);
+        let mut cloud = self.points_seen_about(map, &pose.position, near);
+        let mut report = find(&cloud);
+        if matches!(report, Err(ExitError::InsufficientMap { .. })) {
+            // No keyframe is near enough, or the map does not tell who saw what.
+            cloud = self.kept_points();
+            report = find(&cloud);
+        }
+        Ok(ExitSearch {
+            report: report?,
+            cloud,
+        })
+    }
+
+    /// The kept points that a keyframe within `near` map units of `place` saw.
+    fn points_seen_about(&self, map: &Map, place: &Point3<f64>, near: f64) -> Vec<[f64; 3]> {
+        let about = map.keyframes.iter();
+        let about: BTreeSet<_> = about
+            .filter(|keyframe| (keyframe.center() - place).norm() < near)
+            .map(|keyframe| keyframe.id)
+            .collect();
+        let seen = self.kept.iter().filter(|&&index| {
+            let observers = map.points.get(index).map(|point| &point.observers);
+            observers.is_some_and(|observers| observers.iter().any(|id| about.contains(id)))
+        });
+        seen.filter_map(|&index| self.points.get(index).copied())
+            .collect()
     }
 }
 
@@ -414,5 +448,75 @@ impl Scene {
             meters_per_unit: 1.0,
             points,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Isometry3, Translation3};
+    use slam_bridge::{KeyFrame, KeyFrameId, MapPoint, PointId};
+
+    /// A closed room of 4 m by 4 m about the drone, y down, in a hall of 12 m by 12 m. A keyframe in the room saw the room, one far
+    /// off saw the stretch of the hall that lies behind the wall towards z, as if through a door there.
+    fn map(tells_observers: bool) -> Map {
+        let square = |half: f64, bearing: f64| half / bearing.cos().abs().max(bearing.sin().abs());
+        let mut points = Vec::new();
+        let mut add = |half: f64, bearing: f64, keyframe: u64| {
+            let range = square(half, bearing);
+            for height in -4..=4 {
+                let position = [
+                    range * bearing.cos(),
+                    0.1 * f64::from(height),
+                    range * bearing.sin(),
+                ];
+                points.push(MapPoint {
+                    id: PointId(points.len() as u64),
+                    position: position.into(),
+                    viewing_direction: None,
+                    observers: tells_observers
+                        .then_some(KeyFrameId(keyframe))
+                        .into_iter()
+                        .collect(),
+                });
+            }
+        };
+        for step in 0..720 {
+            let bearing = (f64::from(step) * 0.5 + 0.25).to_radians();
+            let towards_z = (75..105).contains(&(step / 2));
+            if towards_z {
+                // Few points on a bare wall, many of the hall behind it.
+                add(6.0, bearing, 2);
+            }
+            if !towards_z || step % 6 == 0 {
+                add(2.0, bearing, 1);
+            }
+        }
+        let keyframe = |id, z| KeyFrame {
+            id: KeyFrameId(id),
+            time: None,
+            world_from_camera: Isometry3::from(Translation3::new(0.0, 0.0, z)),
+        };
+        Map {
+            points,
+            keyframes: vec![keyframe(1, 0.0), keyframe(2, 4.0)],
+            ..Map::default()
+        }
+    }
+
+    #[test]
+    fn rooms_behind_a_wall_that_others_saw_open_no_exit() {
+        let config = MissionConfig::default();
+        let up = Vector3::new(0.0, -1.0, 0.0);
+        let pose = LevelPose::from_camera(&Isometry3::identity(), up).unwrap();
+        let [told, untold] = [true, false].map(|tells_observers| {
+            let map = map(tells_observers);
+            let scene = Scene::proven(map.positions(), &[], 0.0, &config);
+            scene.exits(&map, &pose, &[], &config).unwrap()
+        });
+        // Without observations nothing tells the hall's points from those seen through a door.
+        assert_eq!(untold.report.exits.len(), 1);
+        assert_eq!(told.report.exits.len(), 0);
+        assert!(told.cloud.len() < untold.cloud.len());
     }
 }

@@ -17,7 +17,7 @@ use super::survey::SIGHT_M;
 use crate::heading::LevelPose;
 use crate::reach::{Reach, ReachLimits};
 use crate::route::{Route, RouteRadii};
-use crate::scene::{Presence, Scene};
+use crate::scene::{ExitSearch, Presence, Scene};
 use crate::stage::{Stage, staged};
 
 /// Places that a flood may reach: a large flat at 0.1 m.
@@ -91,8 +91,11 @@ impl Think {
         context: &mut Context<'_>,
         pose: &LevelPose,
         scene: Scene,
-        exits: Option<exit_finder::ExitReport>,
+        exits: Option<ExitSearch>,
     ) -> Step {
+        let (exits, cloud) = exits.map_or((None, Vec::new()), |found| {
+            (Some(found.report), found.cloud)
+        });
         if let Some(report) = &exits {
             register(context, &scene, report);
         }
@@ -106,10 +109,7 @@ impl Think {
             position: pose.position,
             points: scene.points.len(),
             kept: scene.kept.len(),
-            cloud: exits
-                .as_ref()
-                .map(|_| scene.kept_points())
-                .unwrap_or_default(),
+            cloud,
             exits,
             raw_path: Vec::new(),
             path: Vec::new(),
