@@ -136,7 +136,7 @@ fn gazes(loaded: &LoadedMap) -> Vec<Gaze> {
     loaded.map.keyframes.iter().map(gaze).collect()
 }
 
-fn headline(report: &ExitsReport) -> String {
+pub(crate) fn headline(report: &ExitsReport) -> String {
     let exits = match report.exits.len() {
         0 => "no exit: enclosed as far as it was seen".to_owned(),
         1 => "1 exit".to_owned(),

@@ -264,7 +264,11 @@ fn figure(loaded: &LoadedMap, outcome: &Outcome, arguments: &Pipeline) -> Result
     let view = TopView::new(arguments.up, loaded.unit()).map_err(Failure::internal)?;
     let kept = at(&loaded.points, &outcome.clean.kept_indices);
     let removed = at(&loaded.points, &outcome.clean.removed_indices);
-    let mut layers = vec![scene::cloud("removed", color::REMOVED, &view, &removed).opacity(0.45)];
+    let removed = scene::cloud("removed", color::REMOVED, &view, &removed);
+    let mut layers = vec![removed.opacity(0.45).may_be_cut()];
+    if let Some(found) = &outcome.exits.found {
+        layers.insert(0, scene::unseen(&view, found));
+    }
     layers.extend(obstacles::layers(&view, &kept, &outcome.built));
     if let Some(found) = &outcome.exits.found {
         layers.extend(scene::exits(&view, found));
@@ -278,10 +282,10 @@ fn figure(loaded: &LoadedMap, outcome: &Outcome, arguments: &Pipeline) -> Result
     Ok(Figure {
         title: "Cleaned map, obstacles, exits and path, seen from above".to_owned(),
         subtitle: format!(
-            "{} of {} points kept, {} exits; {}",
+            "{} of {} points kept; {}; {}",
             outcome.clean.kept,
             outcome.clean.points,
-            outcome.exits.exits.len(),
+            exits::headline(&outcome.exits),
             match outcome.plan.length {
                 Some(length) => format!("path {length:.2} {} long", loaded.unit()),
                 None => format!("no path ({})", outcome.plan.status),

@@ -45,7 +45,7 @@ pub(crate) struct Layer {
     pub(crate) opacity: f64,
     pub(crate) shape: Shape,
     /// Whether the picture must reach as far as this layer.
-    pub(crate) in_frame: bool,
+    pub(crate) demand: Demand,
 }
 
 /// What a layer is made of, coordinates in the plane; widths and radii in pixels.
@@ -75,6 +75,16 @@ pub(crate) enum Shape {
     },
 }
 
+/// How much of a layer a picture must show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Demand {
+    All,
+    /// All but the farthest of a cloud.
+    Most,
+    /// Whatever lies where the rest is.
+    Nothing,
+}
+
 impl Layer {
     pub(crate) fn new(label: impl Into<String>, color: Color, shape: Shape) -> Self {
         Self {
@@ -82,7 +92,7 @@ impl Layer {
             color,
             opacity: 1.0,
             shape,
-            in_frame: true,
+            demand: Demand::All,
         }
     }
 
@@ -99,7 +109,13 @@ impl Layer {
 
     /// Lets the picture end before this layer does: for clouds, whose far points would shrink all else.
     pub(crate) fn may_leave_frame(mut self) -> Self {
-        self.in_frame = false;
+        self.demand = Demand::Most;
+        self
+    }
+
+    /// Lets the picture end wherever the other layers do: for what was found to be wrong.
+    pub(crate) fn may_be_cut(mut self) -> Self {
+        self.demand = Demand::Nothing;
         self
     }
 

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::figure::{Figure, Layer};
+use super::figure::{Demand, Figure, Layer};
 
 /// Share of a cloud's coordinates left out at each end of each axis.
 const TAIL: f64 = 0.01;
@@ -20,20 +20,10 @@ impl Frame {
     /// The rectangle for a drawing area of this width over height.
     pub(crate) fn around(figure: &Figure, aspect: f64) -> Self {
         let axis = |index: usize| {
-            let mut range = f64::INFINITY..f64::NEG_INFINITY;
-            for layer in &figure.layers {
-                let values = layer.coordinates().into_iter().map(|point| point[index]);
-                let extent = match layer.in_frame {
-                    true => extremes(values),
-                    false => percentiles(values.collect()),
-                };
-                range = range.start.min(extent.start)..range.end.max(extent.end);
-            }
-            if range.start <= range.end {
-                range
-            } else {
-                -1.0..1.0
-            }
+            let demanded = extent(figure, index, |layer| layer.demand);
+            // A picture of nothing else shows most of what may be cut.
+            let range = demanded.or_else(|| extent(figure, index, |_| Demand::Most));
+            range.unwrap_or(-1.0..1.0)
         };
         let (x, y) = (axis(0), axis(1));
         let height = (length(&y)).max(length(&x) / aspect).max(1e-6) * (1.0 + 2.0 * MARGIN);
@@ -56,7 +46,10 @@ impl Frame {
 
     /// How many coordinates of clouds lie outside, and of how many.
     pub(crate) fn clipped(&self, figure: &Figure) -> (usize, usize) {
-        let clouds = figure.layers.iter().filter(|layer| !layer.in_frame);
+        let clouds = figure
+            .layers
+            .iter()
+            .filter(|layer| layer.demand != Demand::All);
         let coordinates: Vec<[f64; 2]> = clouds.flat_map(Layer::coordinates).collect();
         let outside = coordinates
             .iter()
@@ -64,6 +57,21 @@ impl Frame {
             .count();
         (outside, coordinates.len())
     }
+}
+
+/// What the layers demand along one axis, if they demand anything.
+fn extent(figure: &Figure, axis: usize, demand: impl Fn(&Layer) -> Demand) -> Option<Range<f64>> {
+    let mut range = f64::INFINITY..f64::NEG_INFINITY;
+    for layer in &figure.layers {
+        let values = layer.coordinates().into_iter().map(|point| point[axis]);
+        let extent = match demand(layer) {
+            Demand::All => extremes(values),
+            Demand::Most => percentiles(values.collect()),
+            Demand::Nothing => continue,
+        };
+        range = range.start.min(extent.start)..range.end.max(extent.end);
+    }
+    (range.start <= range.end).then_some(range)
 }
 
 fn length(range: &Range<f64>) -> f64 {
@@ -96,7 +104,27 @@ fn percentiles(mut values: Vec<f64>) -> Range<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::figure::Shape;
     use super::*;
+
+    #[test]
+    fn what_was_removed_does_not_shrink_the_rest() {
+        let dots = |at| Layer::new("", (0, 0, 0), Shape::Dots { at, radius: 1.0 });
+        let kept = dots(vec![[0.0, 0.0], [1.0, 1.0]]);
+        let removed = dots(vec![[50.0, 0.0]; 100]).may_be_cut();
+        let both = Figure {
+            layers: vec![kept, removed.clone()],
+            ..Figure::default()
+        };
+        let frame = Frame::around(&both, 1.0);
+        assert!(!frame.contains([50.0, 0.0]) && frame.contains([1.0, 1.0]));
+        assert_eq!(frame.clipped(&both), (100, 100));
+        let alone = Figure {
+            layers: vec![removed],
+            ..Figure::default()
+        };
+        assert!(Frame::around(&alone, 1.0).contains([50.0, 0.0]));
+    }
 
     #[test]
     fn an_empty_figure_has_a_frame() {

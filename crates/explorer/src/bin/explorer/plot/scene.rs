@@ -36,7 +36,7 @@ pub(crate) fn outliers(view: &TopView, points: &[[f64; 3]]) -> Layer {
     let label = format!("removed ({})", points.len());
     Layer::new(label, color::REMOVED, shape)
         .opacity(0.8)
-        .may_leave_frame()
+        .may_be_cut()
 }
 
 /// The points that the profile looked at, and the fainter others above and below.
