@@ -91,7 +91,7 @@ fn cleaned(
         };
         let mut config = OutlierConfig::default();
         if cleaning == Cleaning::ForExits {
-            config.rays.range_exponent = 1.4;
+            config.rays.one_position.range_exponent = 1.4;
         }
         scan.keep(&remove_outliers(&scan.points, views.as_ref(), &config)?.kept);
     }

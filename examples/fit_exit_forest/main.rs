@@ -24,7 +24,7 @@ use exit_finder::{
 use generator::{Scan, corrupted, scan};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use submodular_minimax::{OutlierConfig, RayConfig, Views, remove_outliers};
+use submodular_minimax::{OutlierConfig, Views, remove_outliers};
 
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -60,13 +60,8 @@ fn main() -> Outcome<()> {
 /// Cleaned with its ranges normalised as for the search for exits, see the README of `exit-finder`.
 fn cleaned(scan: &Scan) -> Outcome<Vec<[f64; 3]>> {
     let views = Views::from_position(scan.agent, scan.points.len())?;
-    let config = OutlierConfig {
-        rays: RayConfig {
-            range_exponent: 1.4,
-            ..RayConfig::default()
-        },
-        ..OutlierConfig::default()
-    };
+    let mut config = OutlierConfig::default();
+    config.rays.one_position.range_exponent = 1.4;
     let kept = remove_outliers(&scan.points, Some(&views), &config)?.kept;
     Ok(kept.into_iter().map(|index| scan.points[index]).collect())
 }

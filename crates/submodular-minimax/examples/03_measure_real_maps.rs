@@ -13,9 +13,7 @@ mod labelled;
 
 use labelled::{Labelled, average_precision, f1, false_positive_rate};
 use std::error::Error;
-use submodular_minimax::{
-    OutlierConfig, OutlierError, RayConfig, Tolerance, Views, remove_outliers,
-};
+use submodular_minimax::{Cues, DepthSource, OutlierConfig, OutlierError, Views, remove_outliers};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folders: Vec<String> = std::env::args().skip(1).collect();
@@ -51,11 +49,6 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Our readings, and the default with one part of it taken away; whether they see the observations.
 fn readings() -> Vec<(&'static str, OutlierConfig, bool)> {
-    let ranged = |rays: RayConfig| OutlierConfig {
-        rays,
-        ..OutlierConfig::default()
-    };
-    let rays = RayConfig::default();
     vec![
         ("D nearest", OutlierConfig::nearest(), true),
         ("F supported", OutlierConfig::supported(), true),
@@ -65,46 +58,55 @@ fn readings() -> Vec<(&'static str, OutlierConfig, bool)> {
         ("default", OutlierConfig::default(), true),
         (
             "- without violations",
-            ranged(RayConfig {
-                violation_exponent: 0.0,
-                ..rays
-            }),
+            changed(|cues| cues.violation_exponent = 0.0),
             true,
         ),
         (
             "- without depth agreement",
-            ranged(RayConfig {
-                depth_exponent: 0.0,
-                near_depth_exponent: 0.0,
-                ..rays
-            }),
+            changed(|cues| (cues.depth_exponent, cues.near_depth_exponent) = (0.0, 0.0)),
+            true,
+        ),
+        (
+            "- without range and parallax",
+            changed(|cues| (cues.far_exponent, cues.parallax_exponent) = (0.0, 0.0)),
             true,
         ),
         (
             "- Euclidean distances",
-            ranged(RayConfig {
-                range_exponent: 0.0,
-                ..rays
-            }),
+            changed(|cues| cues.range_exponent = 0.0),
             true,
         ),
         (
             "- angular distances",
-            ranged(RayConfig {
-                range_exponent: 1.0,
-                ..rays
-            }),
+            changed(|cues| cues.range_exponent = 1.0),
             true,
         ),
         (
-            "- fixed tolerance, 4 times",
-            ranged(RayConfig {
-                tolerance: Tolerance::Fixed(4.0),
-                ..rays
-            }),
+            "- as if all triangulated",
+            taken_for(DepthSource::Triangulated),
+            true,
+        ),
+        (
+            "- as if all measured",
+            taken_for(DepthSource::Measured),
             true,
         ),
     ]
+}
+
+/// The default with its weights changed.
+fn changed(change: impl Fn(&mut Cues)) -> OutlierConfig {
+    let mut config = OutlierConfig::default();
+    change(&mut config.rays.triangulated);
+    change(&mut config.rays.measured);
+    config
+}
+
+/// The default told where depths come from.
+fn taken_for(source: DepthSource) -> OutlierConfig {
+    let mut config = OutlierConfig::default();
+    config.rays.source = source;
+    config
 }
 
 fn row(map: &Labelled, views: Option<&Views>, config: &OutlierConfig) -> Result<(), OutlierError> {

@@ -8,8 +8,8 @@ use labelled::room::Room;
 use labelled::{average_precision, f1, false_positive_rate};
 use proptest::prelude::*;
 use submodular_minimax::{
-    Beta, OutlierConfig, OutlierError, RayConfig, Reading, Solver, StopReason, Views,
-    remove_outliers,
+    Beta, Cues, DepthSource, OutlierConfig, OutlierError, RayConfig, Reading, Solver, StopReason,
+    Views, remove_outliers,
 };
 
 fn presets() -> Vec<OutlierConfig> {
@@ -188,6 +188,19 @@ fn bad_settings_and_input_are_errors_with_numbers() {
             },
         ),
         (
+            "far_exponent",
+            OutlierConfig {
+                rays: RayConfig {
+                    measured: Cues {
+                        far_exponent: -0.1,
+                        ..Cues::measured()
+                    },
+                    ..base.rays
+                },
+                ..base.clone()
+            },
+        ),
+        (
             "(1 + beta) * lambda",
             OutlierConfig {
                 lambda: 0.2,
@@ -267,6 +280,66 @@ fn clouds_without_spacing_are_kept_whole() {
 }
 
 #[test]
+fn clouds_of_a_few_points_keep_what_lies_together() {
+    for n in 5..30 {
+        let mut points: Vec<[f64; 3]> = (0..n)
+            .map(|i| [f64::from(i % 3), f64::from(i / 3), 0.1 * f64::from(i % 2)])
+            .collect();
+        points.push([0.0, 0.0, 100.0]);
+        for config in presets() {
+            let found = remove_outliers(&points, None, &config).unwrap();
+            assert_eq!(found.removed, [n as usize], "{n} {:?}", config.reading);
+        }
+    }
+}
+
+#[test]
+fn a_camera_beyond_all_measure_is_an_error() {
+    let (points, views) = observed_room(200, 3);
+    let mut cameras = views.viewpoints().to_vec();
+    cameras[4] = [0.0, -1e300, 0.0];
+    let observers = |v| views.observers(v).collect();
+    let far = Views::new(cameras.clone(), (0..200).map(observers).collect()).unwrap();
+    let found = remove_outliers(&points, Some(&far), &OutlierConfig::default());
+    assert!(matches!(
+        found,
+        Err(OutlierError::FarCamera { viewpoint: 4, times }) if times > 1e290
+    ));
+    // One that sees nothing is no matter.
+    let blind = |v| views.observers(v).filter(|&c| c != 4).collect();
+    let blind = Views::new(cameras, (0..200).map(blind).collect()).unwrap();
+    assert!(remove_outliers(&points, Some(&blind), &OutlierConfig::default()).is_ok());
+}
+
+#[test]
+fn the_source_of_depths_is_told_by_points_that_one_camera_sees() {
+    let (points, views) = observed_room(500, 4);
+    let run = |views: &Views, source| {
+        let mut config = OutlierConfig::default();
+        config.rays.source = source;
+        remove_outliers(&points, Some(views), &config).unwrap()
+    };
+    let once = |some: usize| {
+        let row = |v| views.observers(v).take(if v % some == 0 { 1 } else { 3 });
+        let rows = (0..500).map(|v| row(v).collect()).collect();
+        Views::new(views.viewpoints().to_vec(), rows).unwrap()
+    };
+    let (few, many) = (once(100), once(10));
+    assert_eq!(
+        run(&few, DepthSource::Told),
+        run(&few, DepthSource::Triangulated)
+    );
+    assert_eq!(
+        run(&many, DepthSource::Told),
+        run(&many, DepthSource::Measured)
+    );
+    assert_ne!(
+        run(&few, DepthSource::Told).scores,
+        run(&few, DepthSource::Measured).scores
+    );
+}
+
+#[test]
 fn generated_rooms_are_cleaned() {
     for (outliers, seed, least) in [(0.05, 11, 0.69), (0.15, 12, 0.74), (0.25, 13, 0.82)] {
         let cloud = Room {
@@ -304,9 +377,9 @@ fn real_maps_keep_their_measured_figures() {
         let f1 = f1(&found.removed, &map.outlier);
         let precision = average_precision(&found.scores, &map.outlier);
         let (least_f1, least_precision) = if map.name.contains("kitchen") {
-            (0.51, 0.53)
+            (0.53, 0.55)
         } else {
-            (0.36, 0.35)
+            (0.41, 0.37)
         };
         assert!(f1 >= least_f1, "{}: F1 {f1:.3}", map.name);
         assert!(

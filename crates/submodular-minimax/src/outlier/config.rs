@@ -1,5 +1,6 @@
 //! Settings of the outlier removal and its named readings.
 
+use super::cues::{Cues, DepthSource, Tolerance};
 use super::error::OutlierError;
 use crate::minimax::Beta;
 
@@ -24,7 +25,7 @@ pub struct OutlierConfig {
     pub neighbours: usize,
     /// Support that makes a full representative, above 0; 2.
     pub support: f64,
-    /// Points a linked component needs, so that it may represent, at least 1; 15.
+    /// Points a linked component needs, so that it may represent, at least 1; 15. Half the cloud always does.
     pub min_component: usize,
     /// Adapts λ, reach, support and component size to how dirty and how large the cloud is: a strict
     /// first pass tells the dirt. λ above then holds for a quarter of dirt and more, up to 10,000 points,
@@ -48,33 +49,16 @@ pub struct RayConfig {
     pub max_cameras: usize,
     /// Rise of λ(v) a violation in [`Reading::Rays`], at least 0, counted up to five; 0.05.
     pub violation_cost: f64,
-    /// Distances are divided by (r(u) r(v)) to half this power in [`Reading::Ranged`], at least 0; 0.8.
-    /// 0 is the Euclidean distance, 1 makes it an angle: between them lie the noise of depth cameras,
-    /// whose maps like 0.5, and of single cameras, whose maps like 1.
-    pub range_exponent: f64,
-    /// Exponent of (1 + violations) in [`Reading::Ranged`], at least 0; 0.1.
-    pub violation_exponent: f64,
-    /// Exponent of (depth disagreement with the wider image neighbours + 0.02) in
-    /// [`Reading::Ranged`], at least 0; 0.25.
-    pub depth_exponent: f64,
-    /// Exponent of (depth disagreement with the nearest image neighbours + 0.02) in
-    /// [`Reading::Ranged`], at least 0; 0.15.
-    pub near_depth_exponent: f64,
     /// Neighbours whose normalised distances are averaged in [`Reading::Ranged`], at least 4; 20.
     pub neighbours: usize,
-    /// How many times the median badness is kept in [`Reading::Ranged`].
-    pub tolerance: Tolerance,
-}
-
-/// How many times the median badness a point may have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Tolerance {
-    /// This many times, above 0.
-    Fixed(f64),
-    /// As the map's own dirt tells: exp(0.08 / q), where q is the disagreement in depth with the
-    /// nearest image neighbours that one point in ten exceeds; between 2.5 and 9 times.
-    Measured,
+    /// Which of the weights below [`Reading::Ranged`] takes.
+    pub source: DepthSource,
+    /// Weights where points were triangulated; [`Cues::triangulated`].
+    pub triangulated: Cues,
+    /// Weights where depths were measured; [`Cues::measured`].
+    pub measured: Cues,
+    /// Weights where all points were seen from one position; [`Cues::one_position`].
+    pub one_position: Cues,
 }
 
 /// Which score and cost the set function is made of. K = (1 − d/h)₊, d the Euclidean distance.
@@ -113,12 +97,11 @@ impl Default for RayConfig {
             margin: 1.2,
             max_cameras: 100,
             violation_cost: 0.05,
-            range_exponent: 0.8,
-            violation_exponent: 0.1,
-            depth_exponent: 0.25,
-            near_depth_exponent: 0.15,
             neighbours: 20,
-            tolerance: Tolerance::Measured,
+            source: DepthSource::Told,
+            triangulated: Cues::triangulated(),
+            measured: Cues::measured(),
+            one_position: Cues::one_position(),
         }
     }
 }
@@ -252,14 +235,26 @@ impl RayConfig {
         positive("rays.margin", self.margin)?;
         at_least("rays.max_cameras", self.max_cameras, 1)?;
         not_negative("rays.violation_cost", self.violation_cost)?;
-        not_negative("rays.violation_exponent", self.violation_exponent)?;
-        not_negative("rays.range_exponent", self.range_exponent)?;
-        not_negative("rays.depth_exponent", self.depth_exponent)?;
-        not_negative("rays.near_depth_exponent", self.near_depth_exponent)?;
         at_least("rays.neighbours", self.neighbours, 4)?;
+        for cues in [self.triangulated, self.measured, self.one_position] {
+            cues.validate()?;
+        }
+        Ok(())
+    }
+}
+
+impl Cues {
+    /// Checks every field's range.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn validate(&self) -> Result<(), OutlierError> {
+        for (field, value) in self.exponents() {
+            not_negative(field, value)?;
+        }
         match self.tolerance {
-            Tolerance::Fixed(times) => positive("rays.tolerance", times),
-            Tolerance::Measured => Ok(()),
+            Tolerance::Fixed(times) => positive("tolerance", times),
+            Tolerance::ByDirt => Ok(()),
         }
     }
 }

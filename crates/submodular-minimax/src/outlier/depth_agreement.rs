@@ -4,7 +4,8 @@
 //! image neighbours lie on. For a point v and a camera c: the 20 points that c sees nearest to v in
 //! direction and |ln(|cv| / |cu|)| for each. Of all of these the tenth smallest counts, so that one
 //! side of a depth edge may disagree; of the nearest twelve the third smallest, so that v need only
-//! be one of a few. The least over the first, the middle and the last observer counts.
+//! be one of a few. Of the first, the middle and the last observer, the median of the former counts, and
+//! the least of the latter.
 //! Cost: three searches a point, O(log) each.
 
 use super::sight::Sight;
@@ -30,17 +31,54 @@ pub(super) struct DepthDisagreement {
 
 impl DepthDisagreement {
     pub(super) fn new(cloud: &Cloud, sight: &Sight<'_>) -> Self {
-        let mut wide = vec![f64::INFINITY; cloud.len()];
-        let mut near = wide.clone();
+        let mut seen = vec![Seen::default(); cloud.len()];
         for camera in 0..sight.cameras.len() {
-            compare_in_camera(cloud, sight, camera, &mut wide, &mut near);
+            compare_in_camera(cloud, sight, camera, &mut seen);
         }
+        let mut near: Vec<f64> = seen.iter().map(|seen| seen.near).collect();
+        let mut wide: Vec<f64> = seen.into_iter().map(Seen::median_wide).collect();
         fill_unknown(&mut wide);
         let dirt = fill_unknown(&mut near).map(|mut known| {
             let at = known.len() * 9 / 10;
             *known.select_nth_unstable_by(at, f64::total_cmp).1
         });
         Self { wide, near, dirt }
+    }
+}
+
+/// What up to three cameras say of a point.
+#[derive(Clone)]
+struct Seen {
+    near: f64,
+    wide: [f64; 3],
+    cameras: usize,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self {
+            near: f64::INFINITY,
+            wide: [f64::INFINITY; 3],
+            cameras: 0,
+        }
+    }
+}
+
+impl Seen {
+    fn add(&mut self, near: f64, wide: f64) {
+        self.near = self.near.min(near);
+        if let Some(place) = self.wide.get_mut(self.cameras) {
+            *place = wide;
+            self.cameras += 1;
+        }
+    }
+
+    /// Infinite where no camera can tell.
+    fn median_wide(mut self) -> f64 {
+        match self.cameras {
+            0 => f64::INFINITY,
+            known => median(&mut self.wide[..known]),
+        }
     }
 }
 
@@ -54,13 +92,7 @@ fn fill_unknown(values: &mut [f64]) -> Option<Vec<f64>> {
     (!known.is_empty()).then_some(known)
 }
 
-fn compare_in_camera(
-    cloud: &Cloud,
-    sight: &Sight<'_>,
-    camera: usize,
-    wide: &mut [f64],
-    near: &mut [f64],
-) {
+fn compare_in_camera(cloud: &Cloud, sight: &Sight<'_>, camera: usize, compared: &mut [Seen]) {
     let seen = &sight.seen[camera];
     if seen.len() < FEWEST {
         return;
@@ -80,8 +112,8 @@ fn compare_in_camera(
         let own = depth[at as usize];
         disagreements.clear();
         disagreements.extend(found.iter().map(|n| log_ratio(own, depth[n.1 as usize])));
-        near[v] = near[v].min(smallest(&mut disagreements[..NEAR.0], NEAR.1));
-        wide[v] = wide[v].min(smallest(&mut disagreements, WIDE.1));
+        let near = smallest(&mut disagreements[..NEAR.0], NEAR.1);
+        compared[v].add(near, smallest(&mut disagreements, WIDE.1));
     }
 }
 

@@ -23,6 +23,17 @@ pub enum OutlierError {
         /// How many points the observations speak of.
         views: usize,
     },
+    /// A camera that sees points is so far away that distances to it overflow.
+    #[error(
+        "camera position {viewpoint} lies {times:e} times the cloud's size away: drop that keyframe and its \
+         observations"
+    )]
+    FarCamera {
+        /// Index of the camera position.
+        viewpoint: usize,
+        /// Its largest coordinate, in sizes of the cloud.
+        times: f64,
+    },
     /// A setting is outside its range.
     #[error("{field} = {value} is out of range: it must be {range}")]
     Setting {

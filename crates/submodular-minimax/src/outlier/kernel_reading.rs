@@ -113,7 +113,9 @@ impl Settings {
             }
         }
         if !matches!(reading, Reading::Nearest | Reading::Supported) {
-            silence_small_components(graph, self.min_component, &mut weight);
+            // In a cloud of a few points the half of them is a component like any other.
+            let least = self.min_component.min(graph.len() as f64 / 2.0);
+            silence_small_components(graph, least, &mut weight);
         }
         Score::Kernel { reach, weight }
     }

@@ -7,6 +7,7 @@
 //! ```
 
 mod config;
+mod cues;
 mod depth_agreement;
 mod error;
 mod kernel_reading;
@@ -18,7 +19,8 @@ mod sight;
 mod solve;
 mod violations;
 
-pub use config::{OutlierConfig, RayConfig, Reading, Solver, Tolerance};
+pub use config::{OutlierConfig, RayConfig, Reading, Solver};
+pub use cues::{Cues, DepthSource, Tolerance};
 pub use error::OutlierError;
 pub use removal::OutlierRemoval;
 
@@ -50,7 +52,8 @@ use std::cell::LazyCell;
 /// ```
 ///
 /// # Errors
-/// Points that are not finite, observations of another number of points, settings out of range.
+/// Points that are not finite, observations of another number of points, a camera beyond 1e100 times the cloud's
+/// size that sees points, settings out of range.
 pub fn remove_outliers<P: PointLike>(
     points: &[P],
     views: Option<&Views>,
@@ -74,7 +77,9 @@ pub fn remove_outliers<P: PointLike>(
         .flatten();
     let sight = views
         .or(assumed.as_ref())
-        .and_then(|views| Sight::new(&cloud, views));
+        .map(|views| Sight::new(&cloud, views))
+        .transpose()?
+        .flatten();
     let problem = match (&sight, config.reading) {
         (Some(sight), Reading::Ranged) => ranged_reading::problem(&cloud, sight, config),
         (sight, _) => kernel_reading::problem(&cloud, &tree, sight.as_ref(), config),

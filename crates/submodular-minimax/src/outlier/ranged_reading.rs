@@ -1,21 +1,26 @@
 //! The ranged reading: distances divided by viewing ranges, costs from what the cameras saw.
 //!
 //! ```text
-//! d(u, v)    = ‖u − v‖ / (r(u) r(v))^0.4, r the median range from the observing cameras
+//! d(u, v)    = ‖u − v‖ / (r(u) r(v))^(e/2), r the median range from the observing cameras
 //! D(u)       = mean of d to the 20 nearest neighbours
 //! s(u, v)    = 1 / (1 + (D(u) + d(u, v)) / unit), u ≠ v
-//! cue(v)     = (wide depth disagreement + 0.02)^0.25 (near one + 0.02)^0.15 (1 + violations)^0.1
+//! cue(v)     = Π of what the observations say, each to its power
 //! θ(v)       = 1 / (1 + T σ / (cue(v) unit)), σ = median over v of cue(v) min over u of D(u) + d(u, v)
-//! ln T       = 0.08 / q, 0.9 to 2.2, q = the near disagreement that one point in ten exceeds
+//!
+//!              e    wide + 0.02   near + 0.02   1 + violations   r / median r   parallax + 0.005   T
+//! triangulated 1    1             0             0.2              0              0                  8
+//! measured     0.8  0             0.2           0.2              0.2            0.3                5.5
+//! one position 0.8  0.25          0.15          0.1              0              0                  exp(0.08 / q)
 //! ```
 //!
+//! Wide and near are disagreements in depth with image neighbours, q the near one that one point in ten exceeds.
 //! So v stays if some other point in a dense neighbourhood is near, as seen from where it was seen; a
 //! point that disagrees with its image neighbours' depth or stands in free space must be nearer. Any
-//! s ≥ 0 and any λ ≥ 0 are legal, hence so are these. How much is tolerated, T, follows from how many
-//! points have no image neighbour at their depth: a map of a single camera with 10 % of outliers and
-//! one of a depth camera with 1 % differ in that, and not in how their distances are distributed.
+//! s ≥ 0 and any λ ≥ 0 are legal, hence so are these. Which row holds, the observations tell: see
+//! [`DepthSource`].
 
-use super::config::{OutlierConfig, Tolerance};
+use super::config::{OutlierConfig, RayConfig};
+use super::cues::{Cues, DepthSource, Tolerance, told};
 use super::depth_agreement::DepthDisagreement;
 use super::problem::{Problem, Score};
 use super::sight::Sight;
@@ -28,9 +33,12 @@ pub(super) fn problem(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) 
     if cloud.len() < 5 {
         return None;
     }
-    let powered = |r: f64| r.powf(config.rays.range_exponent);
-    let ranges: Vec<f64> = ranges(cloud, sight)?.into_iter().map(powered).collect();
-    let tree = RangeTree::new(&cloud.points, &ranges);
+    let weights = weights(sight, config);
+    let ranges = ranges(cloud, sight)?;
+    let powered: Vec<f64> = (ranges.iter())
+        .map(|r| r.powf(weights.range_exponent))
+        .collect();
+    let tree = RangeTree::new(&cloud.points, &powered);
     let graph = NeighbourGraph::new(&tree, config.rays.neighbours, f64::INFINITY);
     let mean =
         |v: usize| graph.row(v).iter().map(|n| n.0.sqrt()).sum::<f64>() / graph.row(v).len() as f64;
@@ -44,10 +52,11 @@ pub(super) fn problem(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) 
     };
     let badness: Vec<f64> = (0..cloud.len()).map(nearest).collect();
     let depth = DepthDisagreement::new(cloud, sight);
-    let cues = cues(cloud, sight, &depth, config);
+    let mut cues = depth_cues(&depth, weights);
+    sight_cues(cloud, sight, &ranges, (weights, &config.rays), &mut cues);
     let unit = median(&mut badness.clone());
     let mut judged: Vec<f64> = badness.iter().zip(&cues).map(|(b, c)| b * c).collect();
-    let allowed = tolerance(config, &depth) * median(&mut judged);
+    let allowed = tolerance(weights, &depth) * median(&mut judged);
     if !(unit > 0.0 && allowed > 0.0) {
         return None;
     }
@@ -86,37 +95,64 @@ fn ranges(cloud: &Cloud, sight: &Sight<'_>) -> Option<Vec<f64>> {
     Some(ranges.into_iter().map(|r| r.max(least)).collect())
 }
 
-/// What the observations say against each point, above 0; 1 is neutral only by comparison.
-fn cues(
+/// The weights that hold for the map.
+fn weights<'a>(sight: &Sight<'_>, config: &'a OutlierConfig) -> &'a Cues {
+    let rays = &config.rays;
+    let source = match rays.source {
+        DepthSource::Told => told(sight),
+        known => Some(known),
+    };
+    match source {
+        None => &rays.one_position,
+        Some(DepthSource::Measured) => &rays.measured,
+        Some(_) => &rays.triangulated,
+    }
+}
+
+/// What image neighbours say against each point, above 0; 1 is neutral only by comparison.
+fn depth_cues(depth: &DepthDisagreement, weights: &Cues) -> Vec<f64> {
+    let raised = |disagreement: f64, exponent| (disagreement + DEPTH_FLOOR).min(1e6).powf(exponent);
+    let both = depth.wide.iter().zip(&depth.near);
+    both.map(|(&wide, &near)| {
+        raised(wide, weights.depth_exponent) * raised(near, weights.near_depth_exponent)
+    })
+    .collect()
+}
+
+/// Multiplies in what range, parallax and violations say.
+fn sight_cues(
     cloud: &Cloud,
     sight: &Sight<'_>,
-    depth: &DepthDisagreement,
-    config: &OutlierConfig,
-) -> Vec<f64> {
-    let rays = &config.rays;
-    let mut cues = vec![1.0; cloud.len()];
-    for (disagreement, exponent) in [
-        (&depth.wide, rays.depth_exponent),
-        (&depth.near, rays.near_depth_exponent),
-    ] {
-        for (cue, disagreement) in cues.iter_mut().zip(disagreement) {
-            *cue *= (disagreement + DEPTH_FLOOR).min(1e6).powf(exponent);
+    ranges: &[f64],
+    (weights, rays): (&Cues, &RayConfig),
+    cues: &mut [f64],
+) {
+    if weights.far_exponent > 0.0 {
+        let typical = median(&mut ranges.to_vec());
+        for (cue, range) in cues.iter_mut().zip(ranges) {
+            *cue *= (range / typical).powf(weights.far_exponent);
         }
     }
-    if rays.violation_exponent > 0.0 {
-        for (cue, count) in cues.iter_mut().zip(violations(cloud, sight, rays)) {
-            *cue *= (1.0 + f64::from(count)).powf(rays.violation_exponent);
+    if weights.parallax_exponent > 0.0 {
+        for (v, cue) in cues.iter_mut().enumerate() {
+            let parallax = sight.parallax(cloud, v);
+            *cue *= (parallax + PARALLAX_FLOOR).powf(weights.parallax_exponent);
         }
     }
-    cues
+    if weights.violation_exponent > 0.0 {
+        let counts = violations(cloud, sight, rays);
+        for (cue, count) in cues.iter_mut().zip(counts) {
+            *cue *= (1.0 + f64::from(count)).powf(weights.violation_exponent);
+        }
+    }
 }
 
 /// How many times the median badness is kept.
-fn tolerance(config: &OutlierConfig, depth: &DepthDisagreement) -> f64 {
-    match (config.rays.tolerance, depth.dirt) {
+fn tolerance(weights: &Cues, depth: &DepthDisagreement) -> f64 {
+    match (weights.tolerance, depth.dirt) {
         (Tolerance::Fixed(times), _) => times,
-        (Tolerance::Measured, None) => LOG_TOLERANCE.1.exp(),
-        (Tolerance::Measured, Some(dirt)) => {
+        (Tolerance::ByDirt, None) => LOG_TOLERANCE.1.exp(),
+        (Tolerance::ByDirt, Some(dirt)) => {
             let (least, _, most) = LOG_TOLERANCE;
             (TOLERATED_DIRT / dirt).clamp(least, most).exp()
         }
@@ -129,5 +165,7 @@ const LOG_TOLERANCE: (f64, f64, f64) = (0.9, 1.3, 2.2);
 const TOLERATED_DIRT: f64 = 0.08;
 /// Disagreements below this log ratio (2 %) are noise.
 const DEPTH_FLOOR: f64 = 0.02;
+/// Parallax below this many radians is noise.
+const PARALLAX_FLOOR: f64 = 0.005;
 /// Ranges count as at least this part of the median range.
 const NEAREST_RANGE: f64 = 1e-3;

@@ -220,7 +220,7 @@ mod tests {
             let views = Views::new(cameras, rows).unwrap();
             let cloud = Cloud::new(&points).ok().unwrap();
             let config = RayConfig { angle, margin: 1.1, ..RayConfig::default() };
-            if let Some(sight) = Sight::new(&cloud, &views) {
+            if let Some(sight) = Sight::new(&cloud, &views).unwrap() {
                 prop_assert_eq!(violations(&cloud, &sight, &config), by_definition(&cloud, &sight, &config));
             }
         }
