@@ -3,7 +3,7 @@
 use super::gradient::{GradientRow, sobel_at};
 use super::thinning::{STRONG, WEAK, strength, thin};
 use crate::image::{GrayImage, GrayView, gaussian_blur};
-use crate::simd::widest;
+use crate::simd::{Kernel, widest};
 
 /// How the strength of a gradient is measured (Sobel units: eight times grey levels per pixel).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -218,8 +218,6 @@ fn limits(config: &CannyConfig, smooth: &GrayView<'_>) -> [i32; 2] {
 
 /// Median of the strengths that are not zero; 0 when all are. A histogram of whole Sobel units.
 #[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
     clippy::cast_precision_loss,
     reason = "strengths of bytes are below 2048"
 )]
@@ -228,15 +226,12 @@ fn median_strength(smooth: &GrayView<'_>, norm: Norm) -> f64 {
     let mut row = GradientRow::new(smooth.width());
     let mut lengths = vec![0_u16; smooth.width()];
     for y in 0..smooth.height() {
-        widest(|| {
-            row.compute(smooth, y);
-            for ((to, &gx), &gy) in lengths.iter_mut().zip(&row.across).zip(&row.down) {
-                let value = strength(i32::from(gx), i32::from(gy), norm);
-                *to = match norm {
-                    Norm::L1 => value as u16,
-                    Norm::L2 => (value as f32).sqrt() as u16,
-                };
-            }
+        widest(RowStrengths {
+            smooth,
+            y,
+            norm,
+            row: &mut row,
+            lengths: &mut lengths,
         });
         for &length in &lengths {
             histogram[usize::from(length).min(2047)] += 1;
@@ -250,6 +245,45 @@ fn median_strength(smooth: &GrayView<'_>, norm: Norm) -> f64 {
         2 * seen >= total
     });
     middle.unwrap_or(0) as f64
+}
+
+/// Strengths of a row in whole Sobel units.
+struct RowStrengths<'a> {
+    smooth: &'a GrayView<'a>,
+    y: usize,
+    norm: Norm,
+    row: &'a mut GradientRow,
+    lengths: &'a mut [u16],
+}
+
+impl Kernel for RowStrengths<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "strengths of bytes are below 2048"
+    )]
+    fn run(self) {
+        let Self {
+            smooth,
+            y,
+            norm,
+            row,
+            lengths,
+        } = self;
+
+        row.compute(smooth, y);
+        for ((to, &gx), &gy) in lengths.iter_mut().zip(&row.across).zip(&row.down) {
+            let value = strength(i32::from(gx), i32::from(gy), norm);
+            *to = match norm {
+                Norm::L1 => value as u16,
+                Norm::L2 => (value as f32).sqrt() as u16,
+            };
+        }
+    }
 }
 
 /// Turns strong pixels and the weak ones connected to them (8 neighbours) into edges; others stay weak.

@@ -6,7 +6,7 @@
 use super::Norm;
 use super::gradient::GradientRow;
 use crate::image::GrayView;
-use crate::simd::widest;
+use crate::simd::{Kernel, widest};
 
 pub(super) const NONE: u8 = 0;
 pub(super) const WEAK: u8 = 1;
@@ -25,15 +25,63 @@ pub(super) fn thin(view: &GrayView<'_>, norm: Norm, limits: [i32; 2]) -> Vec<u8>
         // No strength reaches 2^15 - 1, so that a higher threshold may be lowered to it.
         Norm::L1 => {
             let limits = limits.map(|limit| i16::try_from(limit).unwrap_or(i16::MAX));
-            widest(|| thin_image(view, limits, &mut class, |x, y| x.abs() + y.abs()));
-        }
-        Norm::L2 => widest(|| {
-            thin_image(view, limits, &mut class, |x: i16, y: i16| {
-                strength(i32::from(x), i32::from(y), Norm::L2)
+            widest(ThinBySums {
+                view,
+                limits,
+                class: &mut class,
             });
+        }
+        Norm::L2 => widest(ThinBySquares {
+            view,
+            limits,
+            class: &mut class,
         }),
     }
     class
+}
+
+struct ThinBySums<'a> {
+    view: &'a GrayView<'a>,
+    limits: [i16; 2],
+    class: &'a mut [u8],
+}
+
+impl Kernel for ThinBySums<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            view,
+            limits,
+            class,
+        } = self;
+
+        thin_image(view, limits, class, |x, y| x.abs() + y.abs());
+    }
+}
+
+struct ThinBySquares<'a> {
+    view: &'a GrayView<'a>,
+    limits: [i32; 2],
+    class: &'a mut [u8],
+}
+
+impl Kernel for ThinBySquares<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            view,
+            limits,
+            class,
+        } = self;
+
+        thin_image(view, limits, class, |x, y| {
+            strength(i32::from(x), i32::from(y), Norm::L2)
+        });
+    }
 }
 
 /// How strong a gradient is: Sobel units, squared for [`Norm::L2`].

@@ -9,7 +9,7 @@
 use super::klt::Patch;
 use super::{Keypoint, KltConfig, Match};
 use crate::image::GrayView;
-use crate::simd::widest;
+use crate::simd::{Kernel, widest};
 
 /// Parameters of [`align_matches`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,24 +84,67 @@ pub fn align_matches(
         radius: config.patch.radius.clamp(1, 15),
         ..config.patch
     };
-    let mut patch = Patch::default();
-    let mut align = |found: &Match| {
-        let (a, b) = (
-            keypoints[0].get(found.first)?,
-            keypoints[1].get(found.second)?,
-        );
-        let [from, start] = [a, b].map(|k| [f64::from(k.x), f64::from(k.y)]);
-        let reach = config.max_shift * config.scale_factor.powi(i32::from(a.octave.max(b.octave)));
-        let moved = patch
-            .align(first, second, from, start, &patch_config)
-            .filter(|end| (end[0] - start[0]).hypot(end[1] - start[1]) <= reach);
-        Some(AlignedMatch {
-            first: from,
-            second: moved.unwrap_or(start),
-            is_aligned: moved.is_some(),
+    let pairs: Vec<[&Keypoint; 2]> = matches
+        .iter()
+        .filter_map(|found| {
+            Some([
+                keypoints[0].get(found.first)?,
+                keypoints[1].get(found.second)?,
+            ])
         })
+        .collect();
+    let places = pairs
+        .iter()
+        .map(|pair| pair.map(|k| [f64::from(k.x), f64::from(k.y)]));
+    let mut places: Vec<[[f64; 2]; 2]> = places.collect();
+    let mut found = vec![false; pairs.len()];
+    widest(AlignPlaces {
+        images: [first, second],
+        config: &patch_config,
+        places: &mut places,
+        found: &mut found,
+    });
+    let keep = |((pair, [from, end]), is_found): ((&[&Keypoint; 2], [[f64; 2]; 2]), bool)| {
+        let start = [f64::from(pair[1].x), f64::from(pair[1].y)];
+        let octave = i32::from(pair[0].octave.max(pair[1].octave));
+        let reach = config.max_shift * config.scale_factor.powi(octave);
+        let is_aligned = is_found && (end[0] - start[0]).hypot(end[1] - start[1]) <= reach;
+        AlignedMatch {
+            first: from,
+            second: if is_aligned { end } else { start },
+            is_aligned,
+        }
     };
-    widest(|| matches.iter().filter_map(&mut align).collect())
+    pairs.iter().zip(places).zip(found).map(keep).collect()
+}
+
+/// Moves the second places; notes which could be aligned.
+struct AlignPlaces<'a> {
+    images: [&'a GrayView<'a>; 2],
+    config: &'a KltConfig,
+    places: &'a mut [[[f64; 2]; 2]],
+    found: &'a mut [bool],
+}
+
+impl Kernel for AlignPlaces<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            images: [first, second],
+            config,
+            places,
+            found,
+        } = self;
+
+        let mut patch = Patch::default();
+        for ([from, to], found) in places.iter_mut().zip(found) {
+            if let Some(end) = patch.align(first, second, *from, *to, config) {
+                (*to, *found) = (end, true);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -2,11 +2,11 @@
 //!
 //! 1. For a whole row, at vector width: every arc of nine holds one of each two opposite circle pixels, so a
 //!    corner needs min over the 8 opposite pairs of their max > centre + t (or the mirrored test).
-//! 2. For the few pixels left: the exact score, the greatest threshold at which the pixel is still a corner.
+//! 2. For the few pixels left, 32 at a time: the exact score, the greatest threshold at which the pixel is still a corner.
 //! 3. Suppression of all but the local maxima in 3x3; of equal neighbours the first in reading order stays.
 
 use crate::image::GrayView;
-use crate::simd::widest;
+use crate::simd::{Kernel, widest};
 
 /// A corner at whole pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,15 +95,19 @@ pub(super) fn detect(
         }
         if y < region.bottom {
             let rows: [&[u8]; 7] = core::array::from_fn(|k| view.row(y + k - RADIUS));
-            widest(|| candidates(&rows, region.left, threshold, &mut mask[..width]));
-            score_row(
-                &rows,
-                region.left,
-                &mask,
+            let (scores, found) = (&mut scores[now], &mut found[now]);
+            let row = Row {
+                pixels: &rows,
+                left: region.left,
                 threshold,
-                &mut scores[now],
-                &mut found[now],
-            );
+            };
+            widest(TestRow {
+                row,
+                width,
+                mask: &mut mask,
+                scores,
+                found,
+            });
         }
         if y > region.top {
             let (middle, above) = ((y + 2) % 3, (y + 1) % 3);
@@ -113,76 +117,169 @@ pub(super) fn detect(
     }
 }
 
-/// Marks the pixels that may be corners: 1 or 0 for each column from `left`.
-#[inline(always)]
-fn candidates(rows: &[&[u8]; 7], left: usize, threshold: u8, mask: &mut [u8]) {
-    let n = mask.len();
-    let at = |k: usize| {
-        let (dx, dy) = CIRCLE[k];
-        let start = left.wrapping_add_signed(dx as isize);
-        &rows[RADIUS.wrapping_add_signed(dy as isize)][start..start + n]
-    };
-    let (c, p): (&[u8], [&[u8]; 16]) = (&rows[RADIUS][left..left + n], core::array::from_fn(at));
-    for i in 0..n {
-        let high = c[i].saturating_add(threshold);
-        let low = c[i].saturating_sub(threshold);
-        let (mut bright, mut dark) = (u8::MAX, u8::MIN);
-        for k in 0..8 {
-            bright = bright.min(p[k][i].max(p[k + 8][i]));
-            dark = dark.max(p[k][i].min(p[k + 8][i]));
-        }
-        mask[i] = u8::from(bright > high) | u8::from(dark < low);
+/// A row of pixels with the three above and below, and the first column to test.
+#[derive(Clone, Copy)]
+struct Row<'a> {
+    pixels: &'a [&'a [u8]; 7],
+    left: usize,
+    threshold: u8,
+}
+
+struct TestRow<'a> {
+    row: Row<'a>,
+    width: usize,
+    mask: &'a mut [u8],
+    scores: &'a mut [u8],
+    found: &'a mut Vec<usize>,
+}
+
+impl Kernel for TestRow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            row,
+            width,
+            mask,
+            scores,
+            found,
+        } = self;
+
+        candidates(row, &mut mask[..width]);
+        score_row(row, mask, scores, found);
     }
 }
 
-fn score_row(
-    rows: &[&[u8]; 7],
-    left: usize,
-    mask: &[u8],
-    threshold: u8,
-    scores: &mut [u8],
-    found: &mut Vec<usize>,
-) {
+/// Marks the pixels that may be corners: 1 or 0 for each column from `left`.
+#[inline(always)]
+fn candidates(row: Row<'_>, mask: &mut [u8]) {
+    let whole = mask.len() / BATCH * BATCH;
+    for start in (0..whole).step_by(BATCH) {
+        test_block::<BATCH>(row, start, mask);
+    }
+    // The rest once more with its neighbours, if the row is long enough for that.
+    if let Some(last) = mask.len().checked_sub(BATCH) {
+        test_block::<BATCH>(row, last, mask);
+    } else {
+        (0..mask.len()).for_each(|start| test_block::<1>(row, start, mask));
+    }
+}
+
+/// The same for `N` columns, which are copied so that the compiler knows them to be apart from the mask.
+#[inline(always)]
+fn test_block<const N: usize>(row: Row<'_>, start: usize, mask: &mut [u8]) {
+    let at = |(dx, dy): (i32, i32)| {
+        let from = (row.left + start).wrapping_add_signed(dx as isize);
+        let line = row.pixels[RADIUS.wrapping_add_signed(dy as isize)];
+        let mut pixels = [0; N];
+        pixels.copy_from_slice(&line[from..from + N]);
+        pixels
+    };
+    let (mut bright, mut dark) = ([u8::MAX; N], [u8::MIN; N]);
+    for k in 0..8 {
+        let (a, b) = (at(CIRCLE[k]), at(CIRCLE[k + 8]));
+        for i in 0..N {
+            bright[i] = bright[i].min(a[i].max(b[i]));
+            dark[i] = dark[i].max(a[i].min(b[i]));
+        }
+    }
+    let (centre, marks) = (at((0, 0)), &mut mask[start..start + N]);
+    for i in 0..N {
+        let high = centre[i].saturating_add(row.threshold);
+        let low = centre[i].saturating_sub(row.threshold);
+        marks[i] = u8::from(bright[i] > high) | u8::from(dark[i] < low);
+    }
+}
+
+/// Pixels whose scores are computed together, one in each lane of a vector.
+const BATCH: usize = 32;
+
+type Lanes = [u8; BATCH];
+
+#[inline(always)]
+fn score_row(row: Row<'_>, mask: &[u8], scores: &mut [u8], found: &mut Vec<usize>) {
+    let (mut batch, mut count) = ([0; BATCH], 0);
     for (word, bytes) in mask.chunks_exact(8).enumerate() {
         let mut packed = u64::from_le_bytes([
             bytes[0], bytes[1], bytes[2], bytes[3], bytes[4], bytes[5], bytes[6], bytes[7],
         ]);
         while packed != 0 {
-            let column = word * 8 + packed.trailing_zeros() as usize / 8;
+            batch[count] = word * 8 + packed.trailing_zeros() as usize / 8;
             packed &= packed - 1;
-            let score = corner_score(rows, left + column);
-            if score > threshold {
-                scores[column + 1] = score;
-                found.push(column);
+            count += 1;
+            if count == BATCH {
+                score_batch(row, &batch, scores, found);
+                count = 0;
             }
+        }
+    }
+    score_batch(row, &batch[..count], scores, found);
+}
+
+/// The score of a pixel is the greatest t for which nine pixels in a row on the circle differ from it by at least t, all to one
+/// side.
+#[inline(always)]
+fn score_batch(row: Row<'_>, columns: &[usize], scores: &mut [u8], found: &mut Vec<usize>) {
+    let (mut ring, mut centre) = ([[0; BATCH]; 16], [0; BATCH]);
+    for (lane, &column) in columns.iter().enumerate() {
+        let x = row.left + column;
+        let line = |k: usize| &row.pixels[k][x - RADIUS..x + RADIUS + 1];
+        let (a, b, c, d) = (line(0), line(1), line(2), line(3));
+        let (e, f, g) = (line(4), line(5), line(6));
+        let circle = [
+            a[3], a[4], b[5], c[6], d[6], e[6], f[5], g[4], g[3], g[2], f[1], e[0], d[0], c[0],
+            b[1], a[2],
+        ];
+        for (pixels, pixel) in ring.iter_mut().zip(circle) {
+            pixels[lane] = pixel;
+        }
+        centre[lane] = d[3];
+    }
+    let (mut bright, mut dark) = ([[0; BATCH]; 16], [[0; BATCH]; 16]);
+    for k in 0..16 {
+        for i in 0..BATCH {
+            bright[k][i] = ring[k][i].saturating_sub(centre[i]);
+            dark[k][i] = centre[i].saturating_sub(ring[k][i]);
+        }
+    }
+    let (bright, dark) = (best_arcs(&bright), best_arcs(&dark));
+    for (lane, &column) in columns.iter().enumerate() {
+        let score = bright[lane].max(dark[lane]);
+        if score > row.threshold {
+            scores[column + 1] = score;
+            found.push(column);
         }
     }
 }
 
-/// The greatest t for which nine pixels in a row differ from the centre by at least t, all to one side.
-fn corner_score(rows: &[&[u8]; 7], x: usize) -> u8 {
-    let [a, b, c, d, e, f, g] = rows.map(|row| &row[x - RADIUS..x + RADIUS + 1]);
-    let ring = [
-        a[3], a[4], b[5], c[6], d[6], e[6], f[5], g[4], g[3], g[2], f[1], e[0], d[0], c[0], b[1],
-        a[2],
-    ];
-    let centre = i16::from(d[3]);
-    let difference = ring.map(|pixel| i16::from(pixel) - centre);
-    let bright = best_arc(difference, i16::min);
-    let dark = best_arc(difference.map(|value| -value), i16::min);
-    u8::try_from(bright.max(dark).max(0)).unwrap_or(u8::MAX)
-}
-
 /// max over the 16 arcs of the minimum over their nine pixels, by doubling the arc: 1, 2, 4, 8, 9.
 #[inline(always)]
-fn best_arc(one: [i16; 16], least: impl Fn(i16, i16) -> i16) -> i16 {
-    let two: [i16; 16] = core::array::from_fn(|i| least(one[i], one[(i + 1) & 15]));
-    let four: [i16; 16] = core::array::from_fn(|i| least(two[i], two[(i + 2) & 15]));
-    let eight: [i16; 16] = core::array::from_fn(|i| least(four[i], four[(i + 4) & 15]));
-    (0..16)
-        .map(|i| least(eight[i], one[(i + 8) & 15]))
-        .max()
-        .unwrap_or(0)
+fn best_arcs(one: &[Lanes; 16]) -> Lanes {
+    let two = lesser(one, one, 1);
+    let four = lesser(&two, &two, 2);
+    let eight = lesser(&four, &four, 4);
+    let nine = lesser(&eight, one, 8);
+    let mut best = [0; BATCH];
+    for arc in &nine {
+        for i in 0..BATCH {
+            best[i] = best[i].max(arc[i]);
+        }
+    }
+    best
+}
+
+/// For every place of the circle the lesser of it and of that of `other` `turn` places on.
+#[inline(always)]
+fn lesser(one: &[Lanes; 16], other: &[Lanes; 16], turn: usize) -> [Lanes; 16] {
+    let mut least = [[0; BATCH]; 16];
+    for k in 0..16 {
+        let behind = &other[(k + turn) & 15];
+        for i in 0..BATCH {
+            least[k][i] = one[k][i].min(behind[i]);
+        }
+    }
+    least
 }
 
 fn suppress(

@@ -115,6 +115,7 @@ impl Patch {
     }
 
     /// Gauss-Newton on one level; the patch's place in the second image.
+    #[inline(always)]
     pub(super) fn align(
         &mut self,
         from: &GrayView<'_>,
@@ -154,6 +155,7 @@ impl Patch {
         (difference <= config.difference * count).then_some(here)
     }
 
+    #[inline(always)]
     fn describe(&mut self, view: &GrayView<'_>, place: [f64; 2], radius: usize) -> Option<()> {
         sample_square(view, place, radius + 1, &mut self.wide)?;
         let side = 2 * radius + 1;
@@ -173,12 +175,14 @@ impl Patch {
         Some(())
     }
 
+    #[inline(always)]
     fn hessian(&self) -> [f64; 3] {
         let (x, y) = (&self.across, &self.down);
         [(x, x), (x, y), (y, y)].map(|(a, b)| dot(a.iter().copied(), b))
     }
 
     /// Σ G (I₁ − I₂) for the patch that was sampled last.
+    #[inline(always)]
     fn slope(&self) -> [f64; 2] {
         let difference = || self.grey.iter().zip(&self.wide).map(|(old, new)| old - new);
         [&self.across, &self.down].map(|gradient| dot(difference(), gradient))
@@ -186,6 +190,7 @@ impl Patch {
 }
 
 /// Eight partial sums, so that the compiler may add eight products at once.
+#[inline(always)]
 fn dot(a: impl Iterator<Item = f32>, b: &[f32]) -> f64 {
     let mut lanes = [0.0_f32; 8];
     for (k, (a, b)) in a.zip(b).enumerate() {

@@ -1,7 +1,7 @@
 //! Nearest descriptors by Hamming distance, over all candidates or near a predicted place.
 
 use super::{Descriptor, Keypoint};
-use crate::simd::widest;
+use crate::simd::{Kernel, widest};
 
 /// A pair of descriptors that look alike.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,20 +48,47 @@ pub fn match_descriptors(
 ) -> Vec<Match> {
     let mut reverse = vec![Nearest::default(); second.len()];
     let mut forward = vec![Nearest::default(); first.len()];
-    widest(|| {
-        for (index, (query, best)) in first.iter().zip(&mut forward).enumerate() {
-            for (other, (candidate, back)) in second.iter().zip(&mut reverse).enumerate() {
-                let distance = query.distance(candidate);
-                best.offer(other, distance);
-                back.offer(index, distance);
-            }
-        }
+    widest(Compare {
+        first,
+        second,
+        forward: &mut forward,
+        reverse: &mut reverse,
     });
     let accepted = forward.iter().enumerate().filter_map(|(index, nearest)| {
         let found = nearest.accept(index, config)?;
         (!config.mutual || reverse[found.second].index == index).then_some(found)
     });
     accepted.collect()
+}
+
+/// Offers every pair to both of its descriptors.
+struct Compare<'a> {
+    first: &'a [Descriptor],
+    second: &'a [Descriptor],
+    forward: &'a mut [Nearest],
+    reverse: &'a mut [Nearest],
+}
+
+impl Kernel for Compare<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            first,
+            second,
+            forward,
+            reverse,
+        } = self;
+
+        for (index, (query, best)) in first.iter().zip(forward).enumerate() {
+            for (other, (candidate, back)) in second.iter().zip(&mut *reverse).enumerate() {
+                let distance = query.distance(candidate);
+                best.offer(other, distance);
+                back.offer(index, distance);
+            }
+        }
+    }
 }
 
 /// How predicted places restrict matching.

@@ -8,12 +8,12 @@
 use super::brief::{PATCH_RADIUS, RotatedPattern};
 use super::fast::{Region, detect};
 use super::harris::harris;
-use super::orientation::{DISC_RADIUS, orientation};
+use super::orientation::{DISC_RADIUS, Orientation};
 use super::{
     Corner, Descriptor, OrbConfig, OrbConfigError, Selection, balanced_corners, spread_corners,
 };
 use crate::image::{GrayImage, GrayView, Pyramid, smooth_with, weights};
-use crate::simd::widest;
+use crate::simd::{Kernel, widest};
 
 /// A corner of some pyramid level, in pixels of the full image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,8 +153,12 @@ impl OrbExtractor {
             corners.truncate(2 * share);
             corners.sort_by_key(|corner| (corner.y, corner.x));
         }
-        let rank = |corner: &Corner| harris(view, corner.x as usize, corner.y as usize);
-        let responses: Vec<f32> = widest(|| corners.iter().map(rank).collect());
+        let mut responses = vec![0.0; corners.len()];
+        widest(Rank {
+            view,
+            corners: &corners,
+            responses: &mut responses,
+        });
         let chosen = match self.config.selection {
             Selection::Strongest => strongest(&responses, share),
             Selection::Balanced => {
@@ -209,7 +213,7 @@ impl OrbExtractor {
         let sharp = pyramid.levels()[level].view();
         for &(corner, response) in corners {
             let (x, y) = (corner.x as usize, corner.y as usize);
-            let angle = widest(|| orientation(&sharp, x, y));
+            let angle = widest(Orientation { view: &sharp, x, y });
             let [full_x, full_y] = pyramid.to_full(level, f64::from(corner.x), f64::from(corner.y));
             features.keypoints.push(Keypoint {
                 x: full_x as f32,
@@ -221,6 +225,29 @@ impl OrbExtractor {
             features
                 .descriptors
                 .push(self.pattern.describe(smooth, x, y, angle));
+        }
+    }
+}
+
+struct Rank<'a> {
+    view: &'a GrayView<'a>,
+    corners: &'a [Corner],
+    responses: &'a mut [f32],
+}
+
+impl Kernel for Rank<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            view,
+            corners,
+            responses,
+        } = self;
+
+        for (corner, response) in corners.iter().zip(responses) {
+            *response = harris(view, corner.x as usize, corner.y as usize);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Separable Gaussian smoothing of 8-bit images in integer arithmetic.
 
 use super::{GrayImage, GrayView};
-use crate::simd::widest;
+use crate::simd::{Kernel, widest};
 
 /// Greatest radius that [`gaussian_blur`] uses, pixels.
 pub const BINOMIAL_RADIUS: usize = 3;
@@ -33,15 +33,39 @@ pub(crate) fn smooth_with(
         let rows: [&[u8]; 2 * BINOMIAL_RADIUS + 1] =
             core::array::from_fn(|k| view.row(mirror(y + k, BINOMIAL_RADIUS, height)));
         let target = &mut pixels[y * width..(y + 1) * width];
-        widest(|| {
-            vertical(
-                &rows,
-                weights,
-                &mut line[BINOMIAL_RADIUS..BINOMIAL_RADIUS + width],
-            );
-            extend(line, width);
-            horizontal(line, weights, target);
+        widest(SmoothRow {
+            rows: &rows,
+            weights,
+            line,
+            target,
         });
+    }
+}
+
+struct SmoothRow<'a> {
+    rows: &'a [&'a [u8]; 7],
+    weights: &'a [u16; 4],
+    line: &'a mut [u8],
+    target: &'a mut [u8],
+}
+
+impl Kernel for SmoothRow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            rows,
+            weights,
+            line,
+            target,
+        } = self;
+
+        let width = target.len();
+        let body = &mut line[BINOMIAL_RADIUS..BINOMIAL_RADIUS + width];
+        vertical(rows, weights, body);
+        extend(line, width);
+        horizontal(line, weights, target);
     }
 }
 

@@ -22,12 +22,11 @@ impl Pyramid {
         reason = "sides of images are small"
     )]
     pub fn new(view: &GrayView<'_>, count: usize, factor: f64, smallest_side: usize) -> Self {
-        let rows = (0..view.height()).flat_map(|y| view.row(y).iter().copied());
         let mut base = GrayImage::filled(view.width(), view.height(), 0);
-        base.pixels_mut()
-            .iter_mut()
-            .zip(rows)
-            .for_each(|(to, from)| *to = from);
+        let lines = base.pixels_mut().chunks_exact_mut(view.width());
+        lines
+            .enumerate()
+            .for_each(|(y, line)| line.copy_from_slice(view.row(y)));
         let mut pyramid = Self {
             levels: vec![base],
             scales: vec![[1.0, 1.0]],
