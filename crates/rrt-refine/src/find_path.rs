@@ -1,36 +1,48 @@
-//! The whole way from a question to a short path: RRT-Connect a few times, each path pulled taut, the shortest kept.
+//! The whole way from a question to a short path: RRT-Connect pulled taut, then searches for anything shorter.
 //!
-//! Input: a query and a motion check. Output: the refined path, the raw one and what was spent.
+//! Input: a query and a motion check. Output: the refined path, the plan it came from and what was spent.
 //! Method: 1. RRT-Connect; 2. [`taut`](crate::refine::taut()): the shortest path over its vertices (the paper's refinement), corners cut,
-//! again; 3. another attempt with other samples, since a planner that stops at its first path may take the longer way
-//! round an obstacle and no refiner changes sides; 4. the shortest.
-//! Cost: `attempts` times a search and a refinement; one check where the straight motion is free.
+//! again; 3. a planner that stops at its first path may take the longer way round an obstacle, and no refiner changes sides. So plan
+//! again for a path shorter by `min_gain`, of length c at most: all its points lie in the ellipsoid { x : |x − start| + |x − goal| ≤ c },
+//! so no motion may leave it and samples come from the box around it; 4. until a search of `further_iterations` finds nothing, or
+//! `attempts` are made.
+//! Cost: a search and a refinement an attempt, the later ones in less and less space; one check where the straight motion is free.
+//!
+//! References: Kuffner, LaValle 2000 (RRT-Connect); the ellipsoid is that of Gammell, Srinivasa, Barfoot, "Informed RRT*", IROS 2014.
 
 use rand::Rng;
 
+use crate::bounds::Bounds;
+use crate::euclid::distance;
 use crate::motion::MotionValidator;
 use crate::path::Path;
-use crate::planner::{ConfigError, Plan, PlanError, Query, RrtConfig, Stop, rrt_connect};
+use crate::planner::{ConfigError, Plan, PlanError, Query, RrtConfig, rrt_connect};
 use crate::refine::{TautConfig, taut};
 
 /// Parameters of [`find_path`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FindPathConfig {
-    /// Parameters of each RRT-Connect.
+    /// Parameters of the planner.
     pub rrt: RrtConfig,
-    /// How often to plan; at least 1. Default 6: among the hulls of furnished apartments the shortest of six is 1 % longer than what
-    /// RRT* finds in 50 ms on average, that of one 6 %.
-    pub attempts: usize,
     /// Parameters of the refiner.
     pub taut: TautConfig,
+    /// How often to plan; at least 1. Default 6. With 1 the first path found is refined and returned.
+    pub attempts: usize,
+    /// Most samples of each search for something shorter; 0 or more. Default 250: twice as many find the shorter way
+    /// more often and take half as long again.
+    pub further_iterations: usize,
+    /// A further path must be shorter by this share; 0 to below 1. Default 0.03.
+    pub min_gain: f64,
 }
 
 impl Default for FindPathConfig {
     fn default() -> Self {
         Self {
             rrt: RrtConfig::default(),
-            attempts: 6,
             taut: TautConfig::default(),
+            attempts: 6,
+            further_iterations: 250,
+            min_gain: 0.03,
         }
     }
 }
@@ -43,6 +55,10 @@ impl FindPathConfig {
         if self.attempts == 0 {
             return Err(ConfigError::Attempts { value: 0 }.into());
         }
+        if !(0.0..1.0).contains(&self.min_gain) {
+            let value = self.min_gain;
+            return Err(ConfigError::MinGain { value }.into());
+        }
         Ok(self.taut.validate()?)
     }
 }
@@ -50,19 +66,19 @@ impl FindPathConfig {
 /// What [`find_path`] answers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundPath<const D: usize> {
-    /// The shortest refined path, or `None` where no attempt found one.
+    /// The shortest refined path, or `None` where the first search found none.
     pub path: Option<Path<D>>,
-    /// The plan that it was refined from, with the path as planned; without a path the last plan, which says why.
+    /// The plan that it was refined from, with the path as planned; without a path the first plan, which says why.
     pub plan: Plan<D>,
     /// Plans made.
     pub attempts: usize,
-    /// Motions checked, planning and refining of all attempts together.
+    /// Motions checked, planning and refining of all attempts together; those that leave the ellipsoid count, though they cost nothing.
     pub checks: usize,
 }
 
 /// Finds a short free path with RRT-Connect and [`taut`](crate::refine::taut()). What to call unless you know better.
 ///
-/// Ends early where the straight motion is free, and where an attempt spends its budget without a path.
+/// With several goals, to whichever the shortest path found leads.
 ///
 /// ```
 /// use rand_pcg::Pcg64;
@@ -89,43 +105,51 @@ pub fn find_path<const D: usize>(
     rng: &mut impl Rng,
 ) -> Result<FoundPath<D>, PlanError> {
     config.validate()?;
-    let mut best = attempt(query, motion_is_free, config, rng)?;
-    let mut last_stop = best.plan.stop;
-    let mut attempts = 1;
-    let mut checks = best.checks;
-    while attempts < config.attempts && last_stop == Stop::Reached {
-        let next = attempt(query, motion_is_free, config, rng)?;
-        last_stop = next.plan.stop;
-        attempts += 1;
-        checks += next.checks;
-        if length(&next) < length(&best) {
-            best = next;
+    let plan = rrt_connect(query, motion_is_free, &config.rrt, rng)?;
+    let mut best = refined(plan, motion_is_free, &config.taut)?;
+    let further = RrtConfig {
+        max_iterations: config.further_iterations,
+        try_straight: false,
+        ..config.rrt
+    };
+    while let Some(path) = &best.path
+        && best.attempts < config.attempts
+    {
+        let Some(within) = Shorter::new(query, path.length() * (1.0 - config.min_gain)) else {
+            break;
+        };
+        let free = |from: &[f64; D], to: &[f64; D]| {
+            within.holds(from) && within.holds(to) && motion_is_free.is_free(from, to)
+        };
+        let plan = rrt_connect(&within.query, &free, &further, rng)?;
+        let next = refined(plan, motion_is_free, &config.taut)?;
+        best.attempts += 1;
+        best.checks += next.checks;
+        let Some(shorter) = next.path else { break };
+        if shorter.length() < path.length() {
+            best.path = Some(shorter);
+            best.plan = Plan {
+                goal: next.plan.goal.map(|goal| within.goal_index[goal]),
+                ..next.plan
+            };
         }
     }
-    Ok(FoundPath {
-        attempts,
-        checks,
-        ..best
-    })
+    Ok(best)
 }
 
-/// One plan, refined.
-fn attempt<const D: usize>(
-    query: &Query<D>,
+/// A plan and its path pulled taut.
+fn refined<const D: usize>(
+    plan: Plan<D>,
     motion_is_free: &impl MotionValidator<D>,
-    config: &FindPathConfig,
-    rng: &mut impl Rng,
+    config: &TautConfig,
 ) -> Result<FoundPath<D>, PlanError> {
-    let plan = rrt_connect(query, motion_is_free, &config.rrt, rng)?;
     let mut checks = plan.checks;
-    let path = match &plan.path {
-        Some(raw) => {
-            let refined = taut(raw, motion_is_free, &config.taut)?;
-            checks += refined.checks;
-            Some(refined.path)
-        }
-        None => None,
-    };
+    let mut path = None;
+    if let Some(raw) = &plan.path {
+        let refined = taut(raw, motion_is_free, config)?;
+        checks += refined.checks;
+        path = Some(refined.path);
+    }
     Ok(FoundPath {
         path,
         plan,
@@ -134,6 +158,104 @@ fn attempt<const D: usize>(
     })
 }
 
-fn length<const D: usize>(found: &FoundPath<D>) -> f64 {
-    found.path.as_ref().map_or(f64::INFINITY, Path::length)
+/// Where every path of at most a given length lies.
+struct Shorter<const D: usize> {
+    /// The question with the goals that are near enough and a box around all such paths.
+    query: Query<D>,
+    /// Where these goals stand in the caller's list.
+    goal_index: Vec<usize>,
+    length: f64,
+}
+
+impl<const D: usize> Shorter<D> {
+    /// `None` where no path can be that short.
+    fn new(query: &Query<D>, length: f64) -> Option<Self> {
+        let start = &query.start;
+        let near = |goal: &[f64; D]| distance(start, goal) < length;
+        let goal_index: Vec<usize> = (0..query.goals.len())
+            .filter(|&goal| near(&query.goals[goal]))
+            .collect();
+        let goals: Vec<[f64; D]> = goal_index.iter().map(|&goal| query.goals[goal]).collect();
+        // Both ends are in the box, whatever rounding does.
+        let (mut low, mut high) = (*start, *start);
+        for goal in &goals {
+            for axis in 0..D {
+                let (middle, half) = extent(start, goal, length, axis);
+                let (min, max) = (query.bounds.min()[axis], query.bounds.max()[axis]);
+                low[axis] = low[axis].min(goal[axis]).min((middle - half).max(min));
+                high[axis] = high[axis].max(goal[axis]).max((middle + half).min(max));
+            }
+        }
+        let bounds = Bounds::new(low, high).ok()?;
+        (!goals.is_empty()).then_some(Self {
+            query: Query {
+                start: *start,
+                goals,
+                bounds,
+            },
+            goal_index,
+            length,
+        })
+    }
+
+    /// Whether a path through the point can be that short.
+    fn holds(&self, point: &[f64; D]) -> bool {
+        let to_start = distance(&self.query.start, point);
+        let mut goals = self.query.goals.iter();
+        goals.any(|goal| to_start + distance(point, goal) <= self.length)
+    }
+}
+
+/// Middle and half width, along an axis, of the ellipsoid with these foci and this path length.
+fn extent<const D: usize>(
+    start: &[f64; D],
+    goal: &[f64; D],
+    length: f64,
+    axis: usize,
+) -> (f64, f64) {
+    let gap = distance(start, goal);
+    let along = length / 2.0;
+    let across_squared = (along * along - gap * gap / 4.0).max(0.0);
+    let direction = if gap > 0.0 {
+        (goal[axis] - start[axis]) / gap
+    } else {
+        0.0
+    };
+    let half = (across_squared + gap * gap / 4.0 * direction * direction).sqrt();
+    (start[axis] / 2.0 + goal[axis] / 2.0, half)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_pcg::Pcg64;
+
+    use super::*;
+
+    #[test]
+    fn the_box_holds_every_point_of_a_short_path_and_little_more() -> Result<(), crate::BoundsError>
+    {
+        let bounds = Bounds::new([-20.0; 3], [20.0; 3])?;
+        let goals = [[1.0, 2.0, 0.5], [9.0, 0.0, 0.0], [-2.0, 0.5, 1.5]];
+        let query = Query::to_any_of([-1.0, 0.5, 2.0], &goals, bounds);
+        let shorter = Shorter::new(&query, 4.0).ok_or(crate::BoundsError::Empty)?;
+        assert_eq!(shorter.goal_index, [0, 2]);
+        let inner = shorter.query.bounds;
+        let mut rng = Pcg64::new(1, 1);
+        let (mut low, mut high) = (query.start, query.start);
+        for _ in 0..400_000 {
+            let point = Bounds::new([-6.0; 3], [6.0; 3])?.sample(&mut rng);
+            if shorter.holds(&point) {
+                assert!(inner.contains(&point), "{point:?}");
+                for axis in 0..3 {
+                    low[axis] = low[axis].min(point[axis]);
+                    high[axis] = high[axis].max(point[axis]);
+                }
+            }
+        }
+        for axis in 0..3 {
+            assert!(low[axis] - inner.min()[axis] < 0.2 && inner.max()[axis] - high[axis] < 0.2);
+        }
+        assert!(Shorter::new(&query, 1.0).is_none());
+        Ok(())
+    }
 }

@@ -149,6 +149,13 @@ fn parameters_out_of_range_are_refused() {
             },
             "min_gain is -1",
         ),
+        (
+            FindPathConfig {
+                min_gain: 1.0,
+                ..pipeline
+            },
+            "min_gain is 1",
+        ),
     ] {
         let query = Query::new(INSIDE, [0.2, 0.2], unit());
         let open = |_: &P, _: &P| true;

@@ -43,6 +43,8 @@ pub(crate) fn norm(a: Vec3) -> f64 {
 
 #[inline]
 pub(crate) fn distance_squared(a: Vec3, b: Vec3) -> f64 {
+    #[cfg(test)]
+    DISTANCES.with(|count| count.set(count.get() + 1));
     norm_squared(sub(a, b))
 }
 
@@ -82,4 +84,10 @@ pub(crate) fn orthogonal(a: Vec3) -> Vec3 {
         [0.0, 0.0, 1.0]
     };
     unit(cross(a, axis)).unwrap_or([0.0, 0.0, 1.0])
+}
+
+#[cfg(test)]
+thread_local! {
+    /// How many squared distances this thread has computed: what K-means costs, on any machine.
+    pub(crate) static DISTANCES: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }

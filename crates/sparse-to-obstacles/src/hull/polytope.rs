@@ -16,6 +16,10 @@ pub(super) fn mesh(points: &[Vec3]) -> Option<Mesh> {
         .iter()
         .map(|&point| distance(point, origin))
         .fold(0.0, f64::max);
+    // So small that squares vanish: its inverse would not be a number to scale by.
+    if size < 1e-150 {
+        return None;
+    }
     let local: Vec<Vec3> = points
         .iter()
         .map(|&point| scale(sub(point, origin), 1.0 / size))

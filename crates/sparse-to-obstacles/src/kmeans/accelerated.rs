@@ -14,6 +14,8 @@ use crate::vector::{Vec3, distance};
 
 /// Relative slack of the bounds: far above the rounding of the few operations between refreshes.
 const SLACK: f64 = 1e-9;
+/// Absolute slack: squares of shorter distances have lost digits.
+const LEAST: f64 = 1e-150;
 
 pub(super) struct Accelerated {
     bounds: Vec<Bounds>,
@@ -55,8 +57,8 @@ impl Accelerated {
         } else {
             self.largest.1
         };
-        bounds.upper = (bounds.upper + own) * (1.0 + SLACK);
-        bounds.lower = ((bounds.lower - other) * (1.0 - SLACK)).max(0.0);
+        bounds.upper = (bounds.upper + own) * (1.0 + SLACK) + LEAST;
+        bounds.lower = ((bounds.lower - other) * (1.0 - SLACK) - LEAST).max(0.0);
     }
 
     fn assign_one(
@@ -72,14 +74,14 @@ impl Accelerated {
             return;
         }
         if bounds.upper.is_finite() {
-            bounds.upper = distance(point, centroids[*label]) * (1.0 + SLACK);
+            bounds.upper = distance(point, centroids[*label]) * (1.0 + SLACK) + LEAST;
             if bounds.upper < bounds.lower {
                 return;
             }
         }
         let nearest = tree.nearest_two(point);
         *label = nearest.index;
-        bounds.upper = nearest.squared.sqrt() * (1.0 + SLACK);
+        bounds.upper = nearest.squared.sqrt() * (1.0 + SLACK) + LEAST;
         bounds.lower = nearest.second_squared.sqrt() * (1.0 - SLACK);
     }
 }

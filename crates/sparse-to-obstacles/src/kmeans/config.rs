@@ -32,13 +32,13 @@ pub enum KMeansSeeding {
     /// proportional to the squared distance to the seeds so far.
     PlusPlus {
         /// Candidates drawn per seed, of which the best is kept. `None` is 2 + ln K, the greedy
-        /// variant that scikit-learn uses; `Some(1)` is the original.
+        /// variant that scikit-learn uses; `Some(1)` is the original. 1 to 1,000.
         trials: Option<usize>,
     },
     /// k-means|| (Bahmani et al. 2012): few rounds that draw many candidates at once, then weighted
     /// k-means++ among them.
     Parallel {
-        /// Rounds of drawing, at least 1. The source finds 5 enough.
+        /// Rounds of drawing, 1 to 1,000. The source finds 5 enough.
         rounds: usize,
         /// Expected candidates per round as a multiple of K, more than 0. The source recommends 0.5
         /// to 2.
@@ -58,7 +58,7 @@ pub enum KMeansMethod {
     /// Random batches with a learning rate per centroid (Sculley 2010), then one exact pass. Cheaper
     /// for very many points, of a larger inertia.
     MiniBatch {
-        /// Points per batch, at least 1.
+        /// Points per batch, drawn with repetition; at least 1, and lowered to the number of points.
         batch: usize,
     },
 }
@@ -105,23 +105,36 @@ impl KMeansConfig {
                 tolerance: self.tolerance,
             });
         }
-        if self.seeding == (KMeansSeeding::PlusPlus { trials: Some(0) }) {
-            return Err(KMeansError::NoTrials);
-        }
-        if let KMeansSeeding::Parallel {
-            rounds,
-            oversampling,
-        } = self.seeding
-            && (rounds == 0 || !(oversampling > 0.0 && oversampling.is_finite()))
-        {
-            return Err(KMeansError::Oversampling {
-                rounds,
-                oversampling,
-            });
-        }
+        self.seeding.validate()?;
         if self.method == (KMeansMethod::MiniBatch { batch: 0 }) {
             return Err(KMeansError::EmptyBatch);
         }
         Ok(())
+    }
+}
+
+/// More candidates per seed, or rounds, only cost time.
+const MOST: usize = 1000;
+
+impl KMeansSeeding {
+    fn validate(self) -> Result<(), KMeansError> {
+        match self {
+            KMeansSeeding::PlusPlus {
+                trials: Some(trials),
+            } if !(1..=MOST).contains(&trials) => Err(KMeansError::Trials { trials }),
+            KMeansSeeding::Parallel {
+                rounds,
+                oversampling,
+            } if !((1..=MOST).contains(&rounds)
+                && oversampling > 0.0
+                && oversampling.is_finite()) =>
+            {
+                Err(KMeansError::Oversampling {
+                    rounds,
+                    oversampling,
+                })
+            }
+            _ => Ok(()),
+        }
     }
 }

@@ -45,12 +45,15 @@ pub enum KMeansError {
         /// The value given.
         tolerance: f64,
     },
-    /// k-means++ without candidates.
-    #[error("trials is 0: k-means++ needs at least 1 candidate per seed")]
-    NoTrials,
+    /// k-means++ without candidates, or with too many.
+    #[error("trials is {trials}: k-means++ needs 1 to 1000 candidates per seed")]
+    Trials {
+        /// The value given.
+        trials: usize,
+    },
     /// k-means|| out of range.
     #[error(
-        "rounds is {rounds} and oversampling {oversampling}: at least 1 round and a finite factor \
+        "rounds is {rounds} and oversampling {oversampling}: 1 to 1000 rounds and a finite factor \
          above 0 are needed"
     )]
     Oversampling {

@@ -19,6 +19,7 @@ pub(super) fn run(
     config: &KMeansConfig,
     rng: &mut impl Rng,
 ) -> (Vec<Vec3>, usize, KMeansStop) {
+    let batch = batch.min(points.len());
     let limit = config.tolerance * variance(points);
     let mut counts = vec![0.0; centroids.len()];
     let mut calm = 0;

@@ -212,3 +212,37 @@ fn draw_first(count: usize, weights: Option<&[f64]>, rng: &mut impl Rng) -> usiz
     }
     count - 1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64;
+
+    #[test]
+    fn skipped_clusters_hide_nothing() {
+        let mut rng = Pcg64::seed_from_u64(1);
+        let points: Vec<Vec3> = (0..600)
+            .map(|_| [0, 1, 2].map(|_| rng.random::<f64>()))
+            .collect();
+        let mut seeding = Seeding::new(&points, None, &[], &mut rng);
+        for _ in 0..40 {
+            let candidate = points[seeding.best_candidate(3, &mut rng).unwrap()];
+            let saved =
+                |point: usize| seeding.squared[point] - distance_squared(points[point], candidate);
+            let gain: f64 = (0..points.len()).map(|point| saved(point).max(0.0)).sum();
+            assert!((seeding.gain(candidate) - gain).abs() < 1e-9 * gain);
+            seeding.add(candidate);
+            for (point, &squared) in points.iter().zip(&seeding.squared) {
+                let to_seeds = seeding
+                    .seeds
+                    .iter()
+                    .map(|seed| distance_squared(*point, *seed));
+                assert_eq!(squared, to_seeds.fold(f64::INFINITY, f64::min));
+            }
+        }
+        let mut members: Vec<u32> = seeding.members.concat();
+        members.sort_unstable();
+        assert_eq!(members, (0..600).collect::<Vec<u32>>());
+    }
+}

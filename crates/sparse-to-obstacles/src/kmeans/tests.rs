@@ -65,18 +65,101 @@ fn inertia_never_increases() {
 }
 
 #[test]
-fn greedy_seeding_skips_nothing_that_matters() {
-    // One candidate per seed without skipping, by brute force on the same draws.
-    let points = spread(300, 8);
-    let seeds = plus_plus::seed(&points, &[], 20, Some(4), &mut rng(2));
-    assert_eq!(seeds.len(), 20);
-    let clustering = kmeans(&points, &config(20), &mut rng(2)).unwrap();
-    let random: f64 = {
-        let first: Vec<Vec3> = points[..20].to_vec();
-        let start = kmeans_from(&points, &first, &config(20), &mut rng(2)).unwrap();
-        start.inertia
+fn the_methods_agree_where_squares_lose_digits_too() {
+    for size in [1e-162, 1e-158, 1e-150, 1e130] {
+        let points: Vec<Vec3> = spread(400, 5).iter().map(|p| p.map(|c| c * size)).collect();
+        let lloyd = KMeansConfig {
+            method: KMeansMethod::Lloyd,
+            ..config(20)
+        };
+        let reference = kmeans(&points, &lloyd, &mut rng(1)).unwrap();
+        assert_eq!(
+            reference,
+            kmeans(&points, &config(20), &mut rng(1)).unwrap()
+        );
+    }
+}
+
+/// Twelve heaps of forty points, far apart.
+fn heaps(seed: u64) -> Vec<Vec3> {
+    let mut rng = rng(seed);
+    let heap = |i: usize| [10.0 * (i % 4) as f64, 10.0 * (i / 4) as f64, 0.0];
+    (0..480)
+        .map(|i| crate::vector::add(heap(i % 12), [0, 1, 2].map(|_| rng.random::<f64>())))
+        .collect()
+}
+
+const PARALLEL: KMeansSeeding = KMeansSeeding::Parallel {
+    rounds: 5,
+    oversampling: 2.0,
+};
+
+/// Mean inertia over ten runs of one pass, which the seeds decide.
+fn seeded_inertia(points: &[Vec3], clusters: usize, seeding: KMeansSeeding) -> f64 {
+    let config = KMeansConfig {
+        seeding,
+        max_iterations: 1,
+        ..config(clusters)
     };
-    assert!(clustering.inertia <= random * 1.1);
+    let runs = (0..10).map(|seed| kmeans(points, &config, &mut rng(seed)).unwrap().inertia);
+    runs.sum::<f64>() / 10.0
+}
+
+#[test]
+fn both_seedings_spread_over_what_there_is() {
+    for seed in 0..20 {
+        let points = heaps(seed);
+        for seeding in [KMeansSeeding::PlusPlus { trials: None }, PARALLEL] {
+            let config = KMeansConfig {
+                seeding,
+                ..config(12)
+            };
+            let clustering = kmeans(&points, &config, &mut rng(seed)).unwrap();
+            // Each heap is one cluster: one seed fell into each, or the inertia would be a hundred times this.
+            assert!(clustering.members().iter().all(|heap| heap.len() == 40));
+            assert!(clustering.inertia < 480.0 * 0.3, "{seeding:?} {seed}");
+        }
+    }
+}
+
+#[test]
+fn seeds_of_both_kinds_are_about_as_good_and_better_than_chance() {
+    let points = spread(2000, 3);
+    let greedy = seeded_inertia(&points, 60, KMeansSeeding::PlusPlus { trials: None });
+    let parallel = seeded_inertia(&points, 60, PARALLEL);
+    let plain = seeded_inertia(&points, 60, KMeansSeeding::PlusPlus { trials: Some(1) });
+    let chance = {
+        let once = KMeansConfig {
+            max_iterations: 1,
+            ..config(60)
+        };
+        kmeans_from(&points, &points[..60], &once, &mut rng(1))
+            .unwrap()
+            .inertia
+    };
+    assert!(parallel < 1.05 * greedy, "{parallel} {greedy}");
+    assert!(greedy < 0.95 * plain, "{greedy} {plain}");
+    assert!(plain < chance, "{plain} {chance}");
+}
+
+#[test]
+fn mini_batches_approach_what_all_points_give() {
+    let points = spread(3000, 4);
+    let exact = kmeans(&points, &config(40), &mut rng(1)).unwrap();
+    let run = |batch, max_iterations| {
+        let config = KMeansConfig {
+            method: KMeansMethod::MiniBatch { batch },
+            max_iterations,
+            ..config(40)
+        };
+        kmeans(&points, &config, &mut rng(1)).unwrap()
+    };
+    let (few, many) = (run(50, 2), run(300, 200));
+    assert_eq!((few.iterations, few.stop), (2, KMeansStop::MaxIterations));
+    assert!(exact.inertia <= many.inertia && many.inertia < few.inertia);
+    assert!(many.inertia < 1.06 * exact.inertia);
+    // More than there are points is as many as there are.
+    assert_eq!(run(usize::MAX, 3), run(3000, 3));
 }
 
 #[test]
@@ -124,6 +207,47 @@ fn warm_start_on_a_grown_map_needs_few_iterations() {
     let again = kmeans(&points, &config(60), &mut rng(1)).unwrap();
     assert!(warm.iterations < again.iterations);
     assert!(warm.inertia < 1.05 * again.inertia);
+}
+
+#[test]
+fn warm_start_on_a_grown_map_computes_few_distances() {
+    let points = spread(4000, 9);
+    let distances_of = |run: &mut dyn FnMut() -> Clustering| {
+        let before = crate::vector::DISTANCES.get();
+        let clustering = run();
+        (crate::vector::DISTANCES.get() - before, clustering)
+    };
+    let cold = kmeans(&points[..3800], &KMeansConfig::plain(200), &mut rng(1)).unwrap();
+    let plain = KMeansConfig::plain(200);
+    let (anew, fresh) = distances_of(&mut || kmeans(&points, &plain, &mut rng(1)).unwrap());
+    let (kept, warm) =
+        distances_of(&mut || kmeans_from(&points, &cold.centroids, &plain, &mut rng(1)).unwrap());
+    assert!(warm.inertia < 1.03 * fresh.inertia);
+    // With several threads most are computed on others.
+    if cfg!(not(feature = "rayon")) {
+        assert!(2 * kept < anew, "{kept} distances instead of {anew}");
+    }
+}
+
+#[test]
+fn an_empty_cluster_takes_the_point_that_fits_worst() {
+    /// Notes which labels were changed from outside.
+    struct Noted(Vec<usize>);
+    impl iterate::Assignment for Noted {
+        fn assign(&mut self, _: &[Vec3], _: &[Vec3], _: &mut [usize]) {}
+        fn moved(&mut self, _: &[Vec3], _: &[Vec3]) {}
+        fn relabelled(&mut self, point: usize) {
+            self.0.push(point);
+        }
+    }
+    let points = [0.0, 0.1, 5.0, 9.0, 20.0].map(|x| [x, 0.0, 0.0]);
+    let centroids = [0.0, 50.0, 20.5, 60.0].map(|x| [x, 0.0, 0.0]);
+    let mut labels = [0, 0, 0, 0, 2];
+    let mut noted = Noted(Vec::new());
+    repair::fill_empty(&points, &centroids, &mut labels, &mut noted);
+    // The two farthest from their centroid; the only point of cluster 2 stays.
+    assert_eq!(labels, [0, 0, 3, 1, 2]);
+    assert_eq!(noted.0, [3, 2]);
 }
 
 #[test]
@@ -197,6 +321,19 @@ fn wrong_input_is_refused_with_numbers() {
         },
         KMeansConfig {
             seeding: KMeansSeeding::PlusPlus { trials: Some(0) },
+            ..config(1)
+        },
+        KMeansConfig {
+            seeding: KMeansSeeding::PlusPlus {
+                trials: Some(usize::MAX),
+            },
+            ..config(1)
+        },
+        KMeansConfig {
+            seeding: KMeansSeeding::Parallel {
+                rounds: usize::MAX,
+                oversampling: 1e-300,
+            },
             ..config(1)
         },
         KMeansConfig {

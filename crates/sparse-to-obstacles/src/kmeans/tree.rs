@@ -43,7 +43,7 @@ pub(super) struct CentroidTree {
     entries: Vec<(Vec3, u32)>,
 }
 
-const LEAF: usize = 6;
+const LEAF: usize = 12;
 
 impl CentroidTree {
     pub(super) fn new(centroids: &[Vec3]) -> Self {

@@ -4,7 +4,6 @@ use super::ObstacleSet;
 use super::error::ObstacleError;
 use crate::hull::{self, Hull};
 use crate::point::is_finite;
-use crate::vector::distance;
 
 impl ObstacleSet {
     /// Opens a ball because the drone itself is, or was, there: the start bubble of a mission.
@@ -22,15 +21,16 @@ impl ObstacleSet {
         if self.motion_is_free(centre, centre, radius) {
             return Ok(());
         }
-        let touched =
+        let touches =
             |hull: &Hull| hull::separation(&hull.vertices, centre, centre, radius).lower <= radius;
         let (touched, mut hulls): (Vec<Hull>, Vec<Hull>) = std::mem::take(&mut self.hulls)
             .into_iter()
-            .partition(touched);
+            .partition(touches);
         let points = std::mem::take(&mut self.points);
         let members = touched.into_iter().flat_map(|hull| hull.point_indices);
-        let outside = members.filter(|&index| distance(points[index], centre) > radius);
-        hulls.extend(outside.map(|index| hull::build(&points, vec![index])));
+        let alone = members.map(|index| hull::build(&points, vec![index]));
+        // By the same measure as the queries, to the last digit.
+        hulls.extend(alone.filter(|hull| !touches(hull)));
         self.replace(hulls, points);
         Ok(())
     }

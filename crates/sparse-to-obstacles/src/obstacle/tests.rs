@@ -154,37 +154,142 @@ fn input_that_is_not_finite_is_never_free() {
     ));
 }
 
+/// One obstacle of each rank, and a few polytopes.
+fn of_every_rank() -> ObstacleSet {
+    let mut points: Vec<Vec3> = (0..64)
+        .map(|i| [i % 4, i / 4 % 4, i / 16].map(|c| f64::from(c) / 7.0))
+        .collect();
+    points.push([50.0, 0.1, 0.3]);
+    points.extend([[70.0, 0.0, 0.0], [70.0, 1.0 / 3.0, 0.0]]);
+    points.extend([[90.0, 0.0, 0.1], [90.0, 1.0, 0.2], [90.0, 0.3, 1.0]]);
+    let labels = (0..70).map(|i| match i {
+        0..64 => i / 32,
+        64 => 2,
+        65 | 66 => 3,
+        _ => 4,
+    });
+    let clustering = Clustering {
+        labels: labels.collect(),
+        centroids: vec![[0.0; 3]; 5],
+        inertia: 0.0,
+        iterations: 1,
+        stop: crate::KMeansStop::Converged,
+    };
+    ObstacleSet::from_clustering(&points, &clustering).unwrap()
+}
+
+fn numbers<T: std::str::FromStr<Err: std::fmt::Debug>>(line: &str) -> Vec<T> {
+    line.split(' ').map(|word| word.parse().unwrap()).collect()
+}
+
 #[test]
-fn exports_count_what_they_hold() {
-    let points: Vec<Vec3> = (0..40)
-        .map(|i| [i % 4, i / 4 % 4, i / 16].map(f64::from))
+fn what_is_written_as_obj_reads_back() {
+    let set = of_every_rank();
+    let mut text = Vec::new();
+    set.write_obj(&mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let mut objects: Vec<(Vec<Vec3>, Vec<Vec<usize>>)> = Vec::new();
+    let mut before = 0;
+    for line in text.lines() {
+        let (key, rest) = line.split_once(' ').unwrap();
+        if key == "o" {
+            assert_eq!(rest, format!("obstacle_{}", objects.len()));
+            before += objects.last().map_or(0, |object| object.0.len());
+            objects.push(Default::default());
+            continue;
+        }
+        let object = objects.last_mut().unwrap();
+        match key {
+            "v" => object.0.push(numbers::<f64>(rest).try_into().unwrap()),
+            "p" | "l" | "f" => {
+                let elements: Vec<usize> = numbers(rest);
+                assert_eq!(
+                    elements.len(),
+                    [("p", 1), ("l", 2), ("f", 3)]
+                        .iter()
+                        .find(|e| e.0 == key)
+                        .unwrap()
+                        .1
+                );
+                // Counted from 1, over the whole file.
+                object
+                    .1
+                    .push(elements.iter().map(|index| index - 1 - before).collect());
+            }
+            _ => panic!("{line}"),
+        }
+    }
+    assert_eq!(objects.len(), set.len());
+    for ((vertices, elements), hull) in objects.iter().zip(set.obstacles()) {
+        assert_eq!(*vertices, hull.vertices);
+        match hull.kind {
+            HullKind::Point => assert_eq!(*elements, [[0]]),
+            HullKind::Segment => assert_eq!(*elements, [[0, 1]]),
+            _ => assert_eq!(*elements, hull.triangles),
+        }
+    }
+}
+
+#[test]
+fn what_is_written_as_ply_reads_back() {
+    let set = of_every_rank();
+    let mut text = Vec::new();
+    set.write_ply(&mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let (header, body) = text.split_once("end_header\n").unwrap();
+    assert!(header.starts_with("ply\nformat ascii 1.0\n"));
+    let count = |element: &str| -> usize {
+        let line = header
+            .lines()
+            .find_map(|line| line.strip_prefix(element))
+            .unwrap();
+        line.trim().parse().unwrap()
+    };
+    let (vertices, faces) = (count("element vertex"), count("element face"));
+    let rows: Vec<&str> = body.lines().collect();
+    assert_eq!(rows.len(), vertices + faces);
+    let (mut at, mut face_at) = (0, vertices);
+    for (number, hull) in set.obstacles().iter().enumerate() {
+        for (row, vertex) in rows[at..].iter().zip(&hull.vertices) {
+            let [x, y, z, obstacle] = numbers::<f64>(row)[..] else {
+                panic!("{row}")
+            };
+            assert_eq!(([x, y, z], obstacle), (*vertex, number as f64));
+        }
+        for (row, [a, b, c]) in rows[face_at..].iter().zip(&hull.triangles) {
+            assert_eq!(numbers::<usize>(row), [3, at + a, at + b, at + c]);
+        }
+        at += hull.vertices.len();
+        face_at += hull.triangles.len();
+    }
+    assert_eq!((at, face_at), (vertices, vertices + faces));
+}
+
+#[test]
+fn a_ball_is_added_exactly_round_at_faces_edges_and_corners() {
+    // The unit cube, and motions that pass its face, edge and corner at a given distance, square to the nearest direction.
+    let cube: Vec<Vec3> = (0..8)
+        .map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from))
         .collect();
     let set =
-        ObstacleSet::from_points(&points, &ObstacleConfig::with_clusters(3), &mut rng(1)).unwrap();
-    let (mut obj, mut ply) = (Vec::new(), Vec::new());
-    set.write_obj(&mut obj).unwrap();
-    set.write_ply(&mut ply).unwrap();
-    let (obj, ply) = (
-        String::from_utf8(obj).unwrap(),
-        String::from_utf8(ply).unwrap(),
-    );
-    let vertices: usize = set.obstacles().iter().map(|hull| hull.vertices.len()).sum();
-    let faces: usize = set
-        .obstacles()
-        .iter()
-        .map(|hull| hull.triangles.len())
-        .sum();
-    assert_eq!(
-        obj.lines().filter(|line| line.starts_with("v ")).count(),
-        vertices
-    );
-    assert_eq!(
-        obj.lines().filter(|line| line.starts_with("f ")).count(),
-        faces
-    );
-    assert!(ply.contains(&format!("element vertex {vertices}\n")));
-    let header = ply.lines().take_while(|&line| line != "end_header").count() + 1;
-    assert_eq!(ply.lines().count(), header + vertices + faces);
+        ObstacleSet::from_points(&cube, &ObstacleConfig::with_clusters(1), &mut rng(1)).unwrap();
+    let radius = 0.2;
+    for (nearest, away) in [
+        ([1.0, 0.5, 0.5], [1.0, 0.0, 0.0]),
+        ([1.0, 1.0, 0.5], [1.0, 1.0, 0.0]),
+        ([1.0, 1.0, 1.0], [1.0, 1.0, 1.0]),
+        ([1.0, 1.0, 1.0], [1.0, 2.0, 0.5]),
+    ] {
+        let away = crate::vector::unit(away).unwrap();
+        let along = crate::vector::orthogonal(away);
+        for (gap, is_free) in [(radius - 1e-8, false), (radius + 1e-8, true)] {
+            let middle = add(nearest, crate::vector::scale(away, gap));
+            let [a, b] = [-2.0, 2.0].map(|s| add(middle, crate::vector::scale(along, s)));
+            assert!((set.clearance(a, b) - gap).abs() < 1e-9, "{away:?}");
+            assert_eq!(set.motion_is_free(a, b, radius), is_free, "{away:?} {gap}");
+            assert_eq!(set.first_contact(a, b, radius).is_none(), is_free);
+        }
+    }
 }
 
 /// Two pieces of wall at x = 2 with a doorway between y = -0.5 and 0.5.
@@ -298,6 +403,56 @@ fn an_update_takes_over_what_did_not_change() {
     let none: [Vec3; 0] = [];
     set.update(&none, &[], &config, &mut rng).unwrap();
     assert!(set.is_empty());
+}
+
+#[test]
+fn an_update_gives_what_the_same_clusters_give_anew() {
+    let mut rng = rng(8);
+    let points = blobs(50, &mut rng);
+    let config = ObstacleConfig {
+        max_diameter: 0.9,
+        ..ObstacleConfig::with_clusters(40)
+    };
+    let rays: Vec<Ray> = (0..300)
+        .map(|_| Ray {
+            origin: random_point(&mut rng),
+            end: random_point(&mut rng),
+        })
+        .collect();
+    let set = ObstacleSet::from_observed_points(&points, &rays, &config, &mut rng).unwrap();
+    // New points, and some that a corrected map has moved a little, under the same indices.
+    let mut grown = points.clone();
+    for point in grown.iter_mut().step_by(37) {
+        *point = add(*point, [0.003, -0.002, 0.001]);
+    }
+    grown.extend(blobs(4, &mut rng));
+    let mut updated = set.clone();
+    let update = updated
+        .update(&grown, &rays, &config, &mut Pcg64::seed_from_u64(1))
+        .unwrap();
+    // The same warm start without a hull to take over.
+    let mut anew = ObstacleSet {
+        centroids: set.centroids.clone(),
+        ..ObstacleSet::default()
+    };
+    let built = anew
+        .update(&grown, &rays, &config, &mut Pcg64::seed_from_u64(1))
+        .unwrap();
+    assert_eq!((built.reused, built.built), (0, anew.len()));
+    assert!(update.reused > 10 && update.built > 10, "{update:?}");
+    assert_eq!(updated.obstacles(), anew.obstacles());
+    assert_eq!(
+        (updated.centroids(), updated.inertia()),
+        (anew.centroids(), anew.inertia())
+    );
+    for _ in 0..200 {
+        let (a, b) = (random_point(&mut rng), random_point(&mut rng));
+        assert_eq!(updated.clearance(a, b), anew.clearance(a, b));
+        assert_eq!(
+            updated.first_contact(a, b, 0.1),
+            anew.first_contact(a, b, 0.1)
+        );
+    }
 }
 
 #[test]
