@@ -161,8 +161,8 @@ fn figure(loaded: &LoadedMap, report: &CleanReport, arguments: &Clean) -> Result
         subtitle: text(report),
         axes: view.names(),
         layers: vec![
-            scene::cloud("kept", color::POINT, &view, &kept),
             scene::outliers(&view, &removed),
+            scene::cloud("kept", color::POINT, &view, &kept),
         ],
     })
 }

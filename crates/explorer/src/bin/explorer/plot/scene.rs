@@ -26,13 +26,15 @@ pub(crate) fn cloud(label: &str, tint: Color, view: &TopView, points: &[[f64; 3]
         .may_leave_frame()
 }
 
-/// Removed points, drawn over the kept ones.
+/// Removed points, to be drawn under the kept ones; thousands of them with finer crosses.
 pub(crate) fn outliers(view: &TopView, points: &[[f64; 3]]) -> Layer {
-    let shape = Shape::Crosses {
-        at: view.project_all(points),
-        arm: 2.1,
-        width: 1.0,
+    let (arm, width) = if points.len() > 1000 {
+        (1.4, 0.7)
+    } else {
+        (2.1, 1.0)
     };
+    let at = view.project_all(points);
+    let shape = Shape::Crosses { at, arm, width };
     let label = format!("removed ({})", points.len());
     Layer::new(label, color::REMOVED, shape)
         .opacity(0.8)

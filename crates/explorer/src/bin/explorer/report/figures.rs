@@ -99,8 +99,8 @@ fn cleaned_map(view: &TopView, last: &Scene) -> Result<ReportFigure, Failure> {
         .filter_map(|index| last.points.get(*index).copied())
         .collect();
     let layers = vec![
-        scene::cloud("kept", color::POINT, view, &last.kept_points()),
         scene::outliers(view, &removed),
+        scene::cloud("kept", color::POINT, view, &last.kept_points()),
     ];
     let subtitle = format!("{} of {} points kept", last.kept.len(), last.points.len());
     let drawn = picture("Map without outliers", subtitle, view, layers);
@@ -133,7 +133,7 @@ fn profile(view: &TopView, cycle: &Cycle) -> Result<Option<ReportFigure>, Failur
     );
     let caption = format!(
         "The scan that ended at {seconds:.0} s: mean range per degree about the drone, and the exits \
-         found in the map of that time."
+         found among the points that were seen from about there."
     );
     figure("Figures 3d and 3e.", &caption, &drawn).map(Some)
 }
