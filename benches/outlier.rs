@@ -1,4 +1,7 @@
 //! Outlier removal of 10,000, 50,000 and 200,000 points: closed form, iterations, and SOR over an R*-tree.
+//!
+//! That SOR is the baseline of the quality tables, written to be plain, and no measure of how fast SOR can be: over
+//! SciPy's k-d tree (`cKDTree(points).query(points, 21)`) it takes a half to two thirds of its time.
 #![allow(missing_docs, reason = "criterion's macros make undocumented items")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

@@ -62,7 +62,7 @@ fn svg(curve: &[(f64, f64)]) -> Result<String, std::fmt::Error> {
             text,
             r##"<path d="M{a:.1} {b:.1}L{c:.1} {d:.1}" stroke="#888" stroke-dasharray="5 4"/>"##
         )?;
-        let (x, y) = (c - 4.0, d + 32.0);
+        let (x, y) = (c - 4.0, d + 66.0);
         writeln!(
             text,
             r##"<text x="{x:.1}" y="{y:.1}" text-anchor="end" fill="#666">linear growth</text>"##
@@ -101,16 +101,21 @@ fn axes() -> Result<String, std::fmt::Error> {
 <text x="80" y="20" font-size="15">CPU time of outlier removal, one core</text>
 "##,
     );
-    for points in ["1000", "10000", "100000", "1000000"] {
-        let x = place((points.parse().unwrap_or(1e3), 1.0)).0;
+    for (points, name) in [
+        (1e3, "1,000"),
+        (1e4, "10,000"),
+        (1e5, "100,000"),
+        (1e6, "1,000,000"),
+    ] {
+        let x = place((points, 1.0)).0;
         writeln!(text, r##"<path d="M{x:.1} 30V350" stroke="#ddd"/>"##)?;
         writeln!(
             text,
-            r#"<text x="{x:.1}" y="370" text-anchor="middle">{points}</text>"#
+            r#"<text x="{x:.1}" y="370" text-anchor="middle">{name}</text>"#
         )?;
     }
-    for seconds in ["0.001", "0.01", "0.1", "1", "10"] {
-        let y = place((1e3, seconds.parse().unwrap_or(1.0))).1;
+    for seconds in [0.001, 0.01, 0.1, 1.0, 10.0] {
+        let y = place((1e3, seconds)).1;
         writeln!(text, r##"<path d="M80 {y:.1}H530" stroke="#ddd"/>"##)?;
         writeln!(
             text,

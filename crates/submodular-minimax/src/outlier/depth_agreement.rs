@@ -30,10 +30,11 @@ pub(super) struct DepthDisagreement {
 }
 
 impl DepthDisagreement {
-    pub(super) fn new(cloud: &Cloud, sight: &Sight<'_>) -> Self {
+    /// Without `widely` only the nearest image neighbours are asked, and `wide` tells nothing.
+    pub(super) fn new(cloud: &Cloud, sight: &Sight<'_>, widely: bool) -> Self {
         let mut seen = vec![Seen::default(); cloud.len()];
         for camera in 0..sight.cameras.len() {
-            compare_in_camera(cloud, sight, camera, &mut seen);
+            compare_in_camera(cloud, sight, camera, widely, &mut seen);
         }
         let mut near: Vec<f64> = seen.iter().map(|seen| seen.near).collect();
         let mut wide: Vec<f64> = seen.into_iter().map(Seen::median_wide).collect();
@@ -65,8 +66,7 @@ impl Default for Seen {
 }
 
 impl Seen {
-    fn add(&mut self, near: f64, wide: f64) {
-        self.near = self.near.min(near);
+    fn add(&mut self, wide: f64) {
         if let Some(place) = self.wide.get_mut(self.cameras) {
             *place = wide;
             self.cameras += 1;
@@ -92,15 +92,22 @@ fn fill_unknown(values: &mut [f64]) -> Option<Vec<f64>> {
     (!known.is_empty()).then_some(known)
 }
 
-fn compare_in_camera(cloud: &Cloud, sight: &Sight<'_>, camera: usize, compared: &mut [Seen]) {
+fn compare_in_camera(
+    cloud: &Cloud,
+    sight: &Sight<'_>,
+    camera: usize,
+    widely: bool,
+    compared: &mut [Seen],
+) {
     let seen = &sight.seen[camera];
     if seen.len() < FEWEST {
         return;
     }
-    let (directions, depth): (Vec<[f64; 3]>, Vec<f64>) = seen
-        .iter()
+    let (directions, log_depth): (Vec<[f64; 3]>, Vec<f64>) = (seen.iter())
         .map(|&v| sight.bearing(cloud, camera, v as usize))
+        .map(|(direction, depth)| (direction, depth.ln()))
         .unzip();
+    let neighbours = if widely { WIDE.0 } else { NEAR.0 };
     let tree = RangeTree::new(&directions, &[]);
     let (mut found, mut disagreements) = (Vec::new(), Vec::new());
     for (position, &at) in tree.order().iter().enumerate() {
@@ -108,12 +115,14 @@ fn compare_in_camera(cloud: &Cloud, sight: &Sight<'_>, camera: usize, compared: 
         if !asked(sight.views.row(v), camera) {
             continue;
         }
-        tree.nearest(position, WIDE.0, f64::INFINITY, &mut found);
-        let own = depth[at as usize];
+        tree.nearest(position, neighbours, f64::INFINITY, &mut found);
+        let own = log_depth[at as usize];
         disagreements.clear();
-        disagreements.extend(found.iter().map(|n| log_ratio(own, depth[n.1 as usize])));
-        let near = smallest(&mut disagreements[..NEAR.0], NEAR.1);
-        compared[v].add(near, smallest(&mut disagreements, WIDE.1));
+        disagreements.extend((found.iter()).map(|n| disagreement(own, log_depth[n.1 as usize])));
+        compared[v].near = (compared[v].near).min(smallest(&mut disagreements[..NEAR.0], NEAR.1));
+        if widely {
+            compared[v].add(smallest(&mut disagreements, WIDE.1));
+        }
     }
 }
 
@@ -128,9 +137,11 @@ fn asked(observers: &[u32], camera: usize) -> bool {
     is(0) || is(observers.len() / 2) || is(observers.len().saturating_sub(1))
 }
 
-fn log_ratio(a: f64, b: f64) -> f64 {
-    if a > 0.0 && b > 0.0 {
-        (a / b).ln().abs()
+/// Of two logarithms of depths; that of a point at the camera is infinite, and disagrees with all.
+fn disagreement(a: f64, b: f64) -> f64 {
+    let difference = (a - b).abs();
+    if difference.is_finite() {
+        difference
     } else {
         f64::MAX
     }

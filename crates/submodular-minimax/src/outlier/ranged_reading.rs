@@ -51,7 +51,7 @@ pub(super) fn problem(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) 
         through.fold(f64::INFINITY, f64::min)
     };
     let badness: Vec<f64> = (0..cloud.len()).map(nearest).collect();
-    let depth = DepthDisagreement::new(cloud, sight);
+    let depth = DepthDisagreement::new(cloud, sight, weights.depth_exponent > 0.0);
     let mut cues = depth_cues(&depth, weights);
     sight_cues(cloud, sight, &ranges, (weights, &config.rays), &mut cues);
     let unit = median(&mut badness.clone());
