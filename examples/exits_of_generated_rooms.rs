@@ -9,67 +9,124 @@ mod generator;
 mod scoring;
 
 use exit_finder::ExitConfig;
-use generator::Scan;
+use generator::{Kind, Scan};
 use scoring::{Suite, evaluate};
 use submodular_minimax::{OutlierConfig, Views, remove_outliers};
 
-/// What is done to a cloud before the search.
+type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// How a cloud is cleaned before the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Cleaning {
-    Off,
-    /// Points alone.
-    Blind,
-    /// With the place they were seen from.
-    FromPosition,
-    /// The same with distances divided by a higher power of the range: far points behind doors are sparser.
-    ForExits,
+struct Cleaning {
+    name: &'static str,
+    /// Distances are divided by this power of the range, the agent's place being the viewpoint; `None`: not cleaned.
+    exponent: Option<f64>,
+    /// Whether the search is told what was taken out.
+    told: bool,
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// By default, and with a higher power: far points behind doors are sparser than near ones.
+const CLEANINGS: [Cleaning; 5] = [
+    cleaning("none", None, false),
+    cleaning("from position", Some(0.8), false),
+    cleaning("the same, told", Some(0.8), true),
+    cleaning("for exits", Some(1.4), false),
+    cleaning("the same, told", Some(1.4), true),
+];
+
+const fn cleaning(name: &'static str, exponent: Option<f64>, told: bool) -> Cleaning {
+    Cleaning {
+        name,
+        exponent,
+        told,
+    }
+}
+
+/// What is measured: rooms of a kind at a rate of outliers, cleaned in some ways.
+#[derive(Debug, Clone, Copy)]
+struct Task {
+    kind: Kind,
+    outliers: f64,
+    cleanings: &'static [Cleaning],
+}
+
+fn main() -> Outcome<()> {
     let argument = |k: usize, otherwise: u64| {
         let given = std::env::args().nth(k);
         given.map_or(Ok(otherwise), |text| text.parse::<u64>())
     };
     let (first_seed, rooms) = (argument(1, 1)?, argument(2, 200)?);
     println!(
-        "percent          |  scale known          |  scale unknown        | found of   |        | found of | sectors | closed rooms"
+        "percent                         |  scale known          |  scale unknown        | found of   |        | found of | sectors | closed rooms"
     );
     println!(
-        "outliers         |  P      R      best   |  P      R      best   | 20 1 m off | oracle | oracle's | agree   | silent"
+        "rooms   outliers  cleaning      |  P      R      best   |  P      R      best   | 20 1 m off | oracle | oracle's | agree   | silent"
     );
-    for outliers in [0.0, 0.1, 0.2] {
-        for cleaning in [
-            Cleaning::Off,
-            Cleaning::Blind,
-            Cleaning::FromPosition,
-            Cleaning::ForExits,
-        ] {
-            let suite = |doors, first_seed| Suite {
-                doors,
-                dark: false,
-                rooms,
-                first_seed,
-                outliers,
-                clean: false,
+    for (kind, cleanings) in [
+        (Kind::Plain, &CLEANINGS[..]),
+        (Kind::Curved, &CLEANINGS[4..]),
+        (Kind::Counter, &CLEANINGS[4..]),
+        (Kind::Tall, &CLEANINGS[4..]),
+    ] {
+        let tables = std::thread::scope(|scope| {
+            let table = |outliers| {
+                let task = Task {
+                    kind,
+                    outliers,
+                    cleanings,
+                };
+                scope.spawn(move || task.table(first_seed, rooms))
             };
-            let open = cleaned(suite(1..=3, first_seed).scans(), cleaning)?;
-            let closed = cleaned(suite(0..=0, first_seed + 100_000).scans(), cleaning)?;
-            let config = ExitConfig::default();
-            let [known, unknown] = [true, false].map(|known| evaluate(&open, known, &config));
-            println!(
-                "{:3.0} {cleaning:12?} {} {} {:6.1} {:6.1} {:6.1} {:6.1} {:6.1}",
-                100.0 * outliers,
-                row(&known),
-                row(&unknown),
-                100.0 * known.recall_seen_through(),
-                100.0 * known.oracle(),
-                100.0 * known.recall_evident(),
-                100.0 * known.agreement(),
-                100.0 * evaluate(&closed, true, &config).silence(),
-            );
+            [0.0, 0.1, 0.2]
+                .map(table)
+                .map(std::thread::ScopedJoinHandle::join)
+        });
+        for table in tables {
+            print!("{}", table.map_err(|_| "a thread failed")??);
         }
     }
     Ok(())
+}
+
+impl Task {
+    fn table(self, first_seed: u64, rooms: u64) -> Result<String, String> {
+        let suite = |doors, first_seed| Suite {
+            kind: self.kind,
+            doors,
+            dark: false,
+            rooms,
+            first_seed,
+            outliers: self.outliers,
+            clean: false,
+        };
+        let mut table = String::new();
+        for cleaning in self.cleanings {
+            let scans =
+                |suite: Suite| cleaned(suite.scans(), *cleaning).map_err(|error| error.to_string());
+            let open = scans(suite(1..=3, first_seed))?;
+            let closed = scans(suite(0..=0, first_seed + 100_000))?;
+            table += &self.line(cleaning, &open, &closed);
+        }
+        Ok(table)
+    }
+
+    fn line(self, cleaning: &Cleaning, open: &[Scan], closed: &[Scan]) -> String {
+        let config = ExitConfig::default();
+        let [known, unknown] = [true, false].map(|known| evaluate(open, known, &config));
+        format!(
+            "{:8} {:3.0} {:16} {} {} {:6.1} {:6.1} {:6.1} {:6.1} {:6.1}\n",
+            format!("{:?}", self.kind),
+            100.0 * self.outliers,
+            cleaning.name,
+            row(&known),
+            row(&unknown),
+            100.0 * known.recall_seen_through(),
+            100.0 * known.oracle(),
+            100.0 * known.recall_evident(),
+            100.0 * known.agreement(),
+            100.0 * evaluate(closed, true, &config).silence(),
+        )
+    }
 }
 
 fn row(score: &scoring::Score) -> String {
@@ -77,23 +134,20 @@ fn row(score: &scoring::Score) -> String {
     format!("{p:6.1} {r:6.1} {b:6.1} ")
 }
 
-fn cleaned(
-    mut scans: Vec<Scan>,
-    cleaning: Cleaning,
-) -> Result<Vec<Scan>, Box<dyn std::error::Error>> {
+fn cleaned(mut scans: Vec<Scan>, cleaning: Cleaning) -> Outcome<Vec<Scan>> {
+    let Some(exponent) = cleaning.exponent else {
+        return Ok(scans);
+    };
+    let mut config = OutlierConfig::default();
+    config.rays.one_position.range_exponent = exponent;
     for scan in &mut scans {
-        let views = match cleaning {
-            Cleaning::Off => continue,
-            Cleaning::Blind => None,
-            Cleaning::FromPosition | Cleaning::ForExits => {
-                Some(Views::from_position(scan.agent, scan.points.len())?)
-            }
-        };
-        let mut config = OutlierConfig::default();
-        if cleaning == Cleaning::ForExits {
-            config.rays.one_position.range_exponent = 1.4;
+        let views = Views::from_position(scan.agent, scan.points.len())?;
+        let kept = remove_outliers(&scan.points, Some(&views), &config)?.kept;
+        if cleaning.told {
+            scan.keep_and_doubt(&kept);
+        } else {
+            scan.keep(&kept);
         }
-        scan.keep(&remove_outliers(&scan.points, views.as_ref(), &config)?.kept);
     }
     Ok(scans)
 }

@@ -2,17 +2,17 @@
 
 use exit_finder::CUES;
 
-const DEPTH: usize = 3;
+const DEPTH: usize = 4;
 const NODES: usize = (1 << DEPTH) - 1;
 const LEAVES: usize = 1 << DEPTH;
 /// Trees, and the share of each Newton step that is taken.
-const TREES: usize = 250;
+const TREES: usize = 300;
 const RATE: f64 = 0.1;
 /// Thresholds that are tried for a cue: its quantiles.
 const CELLS: usize = 32;
 /// Pull of the leaves to zero, and the weight that a child needs.
 const PULL: f64 = 2.0;
-const MIN_WEIGHT: f64 = 4.0;
+const MIN_WEIGHT: f64 = 8.0;
 
 type Cues = [f64; CUES];
 

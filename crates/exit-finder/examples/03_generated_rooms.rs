@@ -7,6 +7,7 @@ mod generator;
 mod scoring;
 
 use exit_finder::ExitConfig;
+use generator::Kind;
 use scoring::{Suite, evaluate};
 
 fn main() {
@@ -18,6 +19,7 @@ fn main() {
     ];
     for (clean, outliers) in [(true, 0.0), (true, 0.1), (true, 0.2), (false, 0.1)] {
         let open = Suite {
+            kind: Kind::Plain,
             doors: 1..=3,
             dark: false,
             rooms: 200,

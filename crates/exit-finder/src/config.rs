@@ -151,7 +151,7 @@ impl Default for RangeAware {
             max_walls: 28,
             min_wall: 4,
             margin: 20f64.to_radians(),
-            min_probability: 0.75,
+            min_probability: 0.8,
             min_relative_width: 0.15,
             max_relative_width: 2.0,
             min_expected: 8.0,

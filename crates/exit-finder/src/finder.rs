@@ -44,6 +44,7 @@ pub fn find_exits<P: PointLike>(
     view: &ExitView<'_>,
     config: &ExitConfig,
 ) -> Result<ExitReport, ExitError> {
-    let profile = RangeProfile::of_points(points, view.virtual_points, agent, plane, config)?;
+    let (doubtful, closing) = (view.doubtful, view.virtual_points);
+    let profile = RangeProfile::of_cleaned(points, doubtful, closing, agent, plane, config)?;
     exits_of_profile(profile, view, config)
 }

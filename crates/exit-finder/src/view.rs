@@ -16,6 +16,9 @@ pub struct ExitView<'a> {
     /// count at any height and hide what was seen behind them. They take part in the
     /// search and nowhere else; they count neither for `min_points` nor for the mean range.
     pub virtual_points: &'a [[f64; 3]],
+    /// What a cleaning took out of the map. These points are looked at too, so that no far point behind a door is lost,
+    /// but what is seen mostly by them is believed less; see [`crate::RangeProfile::of_cleaned`].
+    pub doubtful: &'a [[f64; 3]],
 }
 
 /// One look of the camera, for example of a keyframe.

@@ -5,10 +5,12 @@ mod generator;
 mod scoring;
 
 use exit_finder::ExitConfig;
+use generator::Kind;
 use scoring::{Suite, evaluate};
 
 fn suite() -> Suite {
     Suite {
+        kind: Kind::Plain,
         doors: 1..=3,
         dark: false,
         rooms: 40,

@@ -101,7 +101,7 @@ proptest! {
             .into_iter()
             .map(|(position, forward, half_fov_rad)| Gaze { position, forward, half_fov_rad })
             .collect();
-        let view = ExitView { heading: Some(heading), gazes: &gazes, virtual_points: &closed };
+        let view = ExitView { heading: Some(heading), gazes: &gazes, virtual_points: &closed, doubtful: &closed };
         let Some(found) = report(&points, &view) else { return Ok(()) };
         for exit in &found.exits {
             prop_assert!(exit.position.iter().chain(exit.jambs.iter().flatten()).all(|part| part.is_finite()));

@@ -7,7 +7,7 @@
 
 mod walls;
 
-use exit_finder::{AffinePlane, ExitConfig, ExitView, RangeAware, Rule, Shape, find_exits};
+use exit_finder::{AffinePlane, ExitConfig, ExitView, Shape, find_exits};
 use walls::{Walls, room};
 
 /// The room with a door, without what is behind it, at all heights from the floor to the ceiling.
@@ -52,15 +52,7 @@ fn shape_with(behind: &[[f64; 3]]) -> Shape {
 
 fn shape_in(points: &[[f64; 3]], agent: [f64; 3], up: [f64; 3]) -> Shape {
     let plane = AffinePlane::from_up(up, agent).unwrap();
-    // The rooms that the probability was fitted on have no counters; here only the reading counts.
-    let rule = RangeAware {
-        min_probability: 0.5,
-        ..Default::default()
-    };
-    let config = ExitConfig {
-        rule: Rule::RangeAware(rule),
-        ..Default::default()
-    };
+    let config = ExitConfig::default();
     let report = find_exits(points, agent, &plane, &ExitView::default(), &config).unwrap();
     let best = report.best().unwrap();
     assert!((best.bearing_rad - 1.5 * std::f64::consts::PI).abs() < 0.05);

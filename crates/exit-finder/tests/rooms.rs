@@ -166,6 +166,26 @@ fn a_circle_without_an_empty_bin_is_enclosed() {
 }
 
 #[test]
+fn a_round_room_opens_where_its_door_is() {
+    for (radius, half) in [(3.0, 10.0f64), (2.0, 14.0), (4.0, 8.0)] {
+        let points: Vec<[f64; 3]> = (0..1440)
+            .map(|i| (f64::from(i) * 0.25 + 0.1).to_radians())
+            .map(|bearing| {
+                let range = if bearing.cos() > half.to_radians().cos() {
+                    8.0
+                } else {
+                    radius
+                };
+                [range * bearing.cos(), range * bearing.sin(), 1.0]
+            })
+            .collect();
+        let report = search(&points, [0.0; 2], &ExitConfig::default());
+        assert_eq!(report.exits.len(), 1, "{radius} {:?}", report.exits);
+        assert!(report.exits[0].direction[0] > 0.99);
+    }
+}
+
+#[test]
 fn a_circle_of_empty_bins_is_one_sector() {
     // Every bin holds fewer points than it needs to count as occupied.
     let points = square(0).seen_from([0.0; 2], 360, 20.0);

@@ -1,8 +1,8 @@
 //! Which bin a direction falls into: exactly, and without an arc tangent.
 //!
 //! Bin k holds the directions from edge k on and before edge k + 1, counter-clockwise; an edge is a unit
-//! vector and "before" is the sign of a cross product. A polynomial guesses the bin to within
-//! 2·10⁻⁸ rad, the cross products with its two edges correct the guess by at most one.
+//! vector and "before" is the sign of a cross product. A table over the ratio of the coordinates (with many bins a
+//! polynomial, exact to 2·10⁻⁸ rad) guesses the bin, the cross products with its two edges correct the guess by at most one.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -12,7 +12,12 @@ pub(crate) struct Edges {
     /// `n + 1` unit vectors, the last one equal to the first.
     directions: Vec<[f64; 2]>,
     bins_per_radian: f64,
+    /// The least bin in each cell of each octant; empty where a cell is wider than half a bin.
+    guesses: Vec<u16>,
 }
+
+/// Cells of the table in an octant. A cell spans less than 1 / CELLS radians.
+const CELLS: usize = 256;
 
 impl Edges {
     pub(crate) fn new(n: usize) -> Self {
@@ -22,17 +27,44 @@ impl Edges {
             let (sin, cos) = ((k % n) as f64 * (TAU / n as f64)).sin_cos();
             [axis(cos), axis(sin)]
         };
+        let bins_per_radian = n as f64 / TAU;
+        let cells = if 2.0 * bins_per_radian < CELLS as f64 {
+            8 * (CELLS + 1)
+        } else {
+            0
+        };
+        let guess = |cell: usize| {
+            let (octant, step) = (cell / (CELLS + 1), cell % (CELLS + 1));
+            let bearing = |step: usize| place((step as f64 / CELLS as f64).atan(), octant);
+            let least = bearing(step).min(bearing((step + 1).min(CELLS)));
+            (least * bins_per_radian) as u16
+        };
         Self {
             directions: (0..=n).map(edge).collect(),
-            bins_per_radian: n as f64 / TAU,
+            bins_per_radian,
+            guesses: (0..cells).map(guess).collect(),
         }
+    }
+
+    /// A bin next to the true one at most.
+    #[inline]
+    fn guess(&self, direction: [f64; 2]) -> usize {
+        let last = self.directions.len() - 2;
+        if self.guesses.is_empty() {
+            return ((rough_bearing(direction) * self.bins_per_radian) as usize).min(last);
+        }
+        let [x, y] = direction;
+        let (a, b) = (x.abs(), y.abs());
+        let step = (a.min(b) / a.max(b) * CELLS as f64) as usize;
+        let octant = usize::from(b > a) + 2 * usize::from(x < 0.0) + 4 * usize::from(y < 0.0);
+        usize::from(self.guesses[octant * (CELLS + 1) + step.min(CELLS)]).min(last)
     }
 
     /// The bin of a direction of any length but zero.
     #[inline]
     pub(crate) fn bin_of(&self, direction: [f64; 2]) -> usize {
         let last = self.directions.len() - 2;
-        let guess = ((rough_bearing(direction) * self.bins_per_radian) as usize).min(last);
+        let guess = self.guess(direction);
         if is_before(direction, self.directions[guess]) {
             guess.checked_sub(1).unwrap_or(last)
         } else if is_before(direction, self.directions[guess + 1]) {
@@ -62,13 +94,21 @@ fn rough_bearing([x, y]: [f64; 2]) -> f64 {
     let low = (c0 + c1 * s) + (c2 + c3 * s) * s2;
     let high = (c4 + c5 * s) + (c6 + c7 * s) * s2;
     let arc = t * (low + (high + c8 * (s2 * s2)) * (s2 * s2));
-    let mirrored = |flag: bool, whole: f64, angle: f64| {
-        let flag = f64::from(u8::from(flag));
+    place(
+        arc,
+        usize::from(b > a) + 2 * usize::from(x < 0.0) + 4 * usize::from(y < 0.0),
+    )
+}
+
+/// The bearing of an arc of the first octant in another one: bit 0 for |y| > |x|, bit 1 for x < 0, bit 2 for y < 0.
+#[inline]
+fn place(arc: f64, octant: usize) -> f64 {
+    let mirrored = |bit: usize, whole: f64, angle: f64| {
+        let flag = (octant >> bit & 1) as f64;
         whole * flag + (1.0 - 2.0 * flag) * angle
     };
-    let first_quadrant = mirrored(b > a, FRAC_PI_2, arc);
-    let upper_half = mirrored(x < 0.0, PI, first_quadrant);
-    mirrored(y < 0.0, TAU, upper_half)
+    let first_quadrant = mirrored(0, FRAC_PI_2, arc);
+    mirrored(2, TAU, mirrored(1, PI, first_quadrant))
 }
 
 const COEFFICIENTS: [f64; 9] = [
@@ -103,7 +143,7 @@ mod tests {
 
     #[test]
     fn every_edge_belongs_to_the_bin_it_starts() {
-        for n in [8, 9, 36, 360, 1000, 12_345] {
+        for n in [8, 9, 36, 360, 721, 803, 805, 1000, 12_345] {
             let edges = Edges::new(n);
             for k in 0..n {
                 let bearing = k as f64 * TAU / n as f64;
@@ -111,6 +151,19 @@ mod tests {
                 assert_eq!(edges.bin_of(edges.directions[k]), k, "{n}");
                 assert_eq!(edges.bin_of(place(1e-12)), k, "{n}");
                 assert_eq!(edges.bin_of(place(-1e-12)), (k + n - 1) % n, "{n}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_direction_lies_between_its_edges() {
+        for n in [8, 100, 360, 803, 2000] {
+            let edges = Edges::new(n);
+            for i in 0..200_000u32 {
+                let bearing = f64::from(i) * (TAU / 200_000.0) + 1e-9;
+                let direction = [7.0 * bearing.cos(), 7.0 * bearing.sin()];
+                let bin = edges.bin_of(direction);
+                assert_eq!(bin, (bearing * n as f64 / TAU) as usize, "{n} {bearing}");
             }
         }
     }

@@ -1,11 +1,12 @@
 //! A profile that follows a changing map: an update costs only the changed points.
 
-use super::band::Band;
+use super::band::{Band, Layer};
 use super::binning::check_support;
 use super::edges::Edges;
-use super::polar::{Eye, Polar};
+use super::polar::Eye;
 use super::running_median::RunningMedian;
 use super::samples::Samples;
+use super::survey::Survey;
 use super::{BinStats, PointCounts, RangeProfile};
 use crate::config::ExitConfig;
 use crate::error::ExitError;
@@ -14,10 +15,13 @@ use crate::plane::AffinePlane;
 /// Where a point went, so that it can be taken out again.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
-    Bin { bin: usize, level: bool, range: f64 },
+    Bin {
+        bin: usize,
+        layer: Layer,
+        range: f64,
+    },
     NonFinite,
     AtAgent,
-    OutsideBand,
 }
 
 /// The range profile of a map whose points come, move and go.
@@ -33,9 +37,11 @@ pub struct LiveProfile {
     agent: [f64; 3],
     config: ExitConfig,
     band: Band,
-    /// Bit patterns of the ranges, ascending per bin: all, and those at flying height.
+    /// Bit patterns of the ranges, ascending per bin: those in the band, at flying height, and at any height.
     seen: Vec<Vec<u64>>,
     level: Vec<Vec<u64>>,
+    any_height: Vec<Vec<u64>>,
+    above: Vec<Vec<u64>>,
     stats: Vec<BinStats>,
     median: RunningMedian,
     counts: PointCounts,
@@ -60,9 +66,9 @@ impl LiveProfile {
         let eye = Eye::new(agent, plane)?;
         let edges = Edges::new(config.bins);
         let mut ignored = PointCounts::default();
-        let look = |&point: &[f64; 3]| eye.look(point, &edges, &mut ignored);
-        let sight: Vec<Polar> = points.iter().filter_map(look).collect();
-        let band = Band::of(config.band, &sight, config.bins);
+        let all = points.iter().copied();
+        let survey = Survey::of(all, (&eye, &edges), config.bins, &mut ignored);
+        let band = Band::of(config.band, &survey);
         let mut live = Self {
             eye,
             edges,
@@ -72,6 +78,8 @@ impl LiveProfile {
             band,
             seen: vec![Vec::new(); config.bins],
             level: vec![Vec::new(); config.bins],
+            any_height: vec![Vec::new(); config.bins],
+            above: vec![Vec::new(); config.bins],
             stats: vec![BinStats::EMPTY; config.bins],
             median: RunningMedian::default(),
             counts: PointCounts::default(),
@@ -80,18 +88,21 @@ impl LiveProfile {
         };
         for &point in points {
             let place = live.place(point);
-            if let Place::Bin { bin, level, range } = place {
-                live.seen[bin].push(range.to_bits());
-                if level {
-                    live.level[bin].push(range.to_bits());
+            if let Place::Bin { bin, layer, range } = place {
+                for list in live.lists(bin, layer) {
+                    list.push(range.to_bits());
                 }
-                live.median.insert(range);
+                if layer.in_band() {
+                    live.median.insert(range);
+                }
             }
             live.count(place, true);
         }
         for bin in 0..config.bins {
             live.seen[bin].sort_unstable();
             live.level[bin].sort_unstable();
+            live.any_height[bin].sort_unstable();
+            live.above[bin].sort_unstable();
             live.refresh(bin);
         }
         Ok(live)
@@ -101,28 +112,35 @@ impl LiveProfile {
     pub fn insert(&mut self, point: [f64; 3]) {
         let place = self.place(point);
         self.count(place, true);
-        if let Place::Bin { bin, level, range } = place {
-            for list in self.lists(bin, level) {
+        if let Place::Bin { bin, layer, range } = place {
+            for list in self.lists(bin, layer) {
                 let at = list.partition_point(|&bits| bits < range.to_bits());
                 list.insert(at, range.to_bits());
             }
-            self.median.insert(range);
-            self.refresh(bin);
+            if layer.in_band() {
+                self.median.insert(range);
+                self.refresh(bin);
+            }
         }
     }
 
     /// Takes out a point that was inserted with exactly these coordinates; false when there is none.
     pub fn remove(&mut self, point: [f64; 3]) -> bool {
         let place = self.place(point);
-        if let Place::Bin { bin, level, range } = place {
-            for list in self.lists(bin, level) {
-                let Ok(at) = list.binary_search(&range.to_bits()) else {
-                    return false;
-                };
-                list.remove(at);
+        if let Place::Bin { bin, layer, range } = place {
+            let held = |list: &mut Vec<u64>| list.binary_search(&range.to_bits()).is_ok();
+            if !self.lists(bin, layer).all(held) {
+                return false;
             }
-            self.median.remove(range);
-            self.refresh(bin);
+            for list in self.lists(bin, layer) {
+                if let Ok(at) = list.binary_search(&range.to_bits()) {
+                    list.remove(at);
+                }
+            }
+            if layer.in_band() {
+                self.median.remove(range);
+                self.refresh(bin);
+            }
         }
         self.count(place, false);
         true
@@ -152,6 +170,9 @@ impl LiveProfile {
             bins: self.stats.clone(),
             seen: samples(&self.seen),
             level: samples(&self.level),
+            any_height: samples(&self.any_height),
+            above: samples(&self.above),
+            doubtful: samples(&vec![Vec::new(); self.config.bins]),
             mean_range,
             median_range: self.median.median().unwrap_or(f64::INFINITY),
             radius: mean_range,
@@ -171,23 +192,20 @@ impl LiveProfile {
                 Place::NonFinite
             };
         };
-        match self.band.level_of(&p) {
-            None => Place::OutsideBand,
-            Some(level) => Place::Bin {
-                bin: p.bin as usize,
-                level,
-                range: p.range,
-            },
+        Place::Bin {
+            bin: p.bin as usize,
+            layer: self.band.layer_of(p.offset, p.range, p.height),
+            range: p.range,
         }
     }
 
     fn count(&mut self, place: Place, added: bool) {
         let counts = &mut self.counts;
         let slot = match place {
-            Place::Bin { .. } => &mut counts.used,
+            Place::Bin { layer, .. } if layer.in_band() => &mut counts.used,
+            Place::Bin { .. } => &mut counts.outside_band,
             Place::NonFinite => &mut counts.non_finite,
             Place::AtAgent => &mut counts.at_agent,
-            Place::OutsideBand => &mut counts.outside_band,
         };
         for slot in [slot, &mut counts.given] {
             *slot = if added {
@@ -199,9 +217,13 @@ impl LiveProfile {
     }
 
     /// The lists that hold a point of this bin.
-    fn lists(&mut self, bin: usize, level: bool) -> impl Iterator<Item = &mut Vec<u64>> {
-        let level = level.then_some(&mut self.level[bin]);
-        std::iter::once(&mut self.seen[bin]).chain(level)
+    fn lists(&mut self, bin: usize, layer: Layer) -> impl Iterator<Item = &mut Vec<u64>> {
+        let level = (layer == Layer::Level).then_some(&mut self.level[bin]);
+        let seen = layer.in_band().then_some(&mut self.seen[bin]);
+        std::iter::once(&mut self.any_height[bin])
+            .chain(seen)
+            .chain(level)
+            .chain((layer == Layer::Above).then_some(&mut self.above[bin]))
     }
 
     fn refresh(&mut self, bin: usize) {
@@ -223,6 +245,7 @@ fn samples(lists: &[Vec<u64>]) -> Samples {
 mod tests {
     use super::*;
     use crate::config::HeightBand;
+    use proptest::prelude::*;
 
     fn cloud(n: u32) -> Vec<[f64; 3]> {
         (0..n)
@@ -262,10 +285,42 @@ mod tests {
         let rebuilt = RangeProfile::of_points(&now, &[], [0.0; 3], &plane, &config).unwrap();
         let updated = live.profile().unwrap();
         assert_eq!(updated.bins, rebuilt.bins);
-        assert_eq!((updated.seen, updated.level), (rebuilt.seen, rebuilt.level));
+        assert_eq!(
+            (updated.seen, updated.level, updated.any_height),
+            (rebuilt.seen, rebuilt.level, rebuilt.any_height)
+        );
+        assert_eq!(updated.above, rebuilt.above);
         assert_eq!(updated.counts, rebuilt.counts);
         assert_eq!(updated.median_range, rebuilt.median_range);
         assert!((updated.mean_range - rebuilt.mean_range).abs() < 1e-9);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Two ways to the same numbers: list by list as here, and in two passes with counted cells and merged samples.
+        #[test]
+        fn inserting_points_equals_binning_them(
+            points in prop::collection::vec(prop::array::uniform3(-3.0f64..3.0), 30..900),
+            bins in 8usize..120, share in 0.05f64..0.6, kind in 0u8..4,
+        ) {
+            let plane = AffinePlane::from_up([0.1, 0.2, 1.0], [0.0; 3]).unwrap();
+            let band = match kind {
+                0 => HeightBand::Off,
+                1 => HeightBand::Relative(share),
+                2 => HeightBand::Strip(share),
+                _ => HeightBand::Absolute { from: -2.0 * share, to: share },
+            };
+            let config = ExitConfig { bins, band, min_points: 1, ..Default::default() };
+            let binned = RangeProfile::of_points(&points, &[], [0.0; 3], &plane, &config);
+            let live = LiveProfile::new(&points, [0.0; 3], &plane, &config).unwrap();
+            let (Ok(mut binned), Ok(inserted)) = (binned, live.profile()) else {
+                return Ok(());
+            };
+            prop_assert!((binned.mean_range - inserted.mean_range).abs() < 1e-9);
+            (binned.mean_range, binned.radius) = (inserted.mean_range, inserted.radius);
+            prop_assert_eq!(binned, inserted);
+        }
     }
 
     #[test]

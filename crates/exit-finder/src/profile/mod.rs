@@ -13,6 +13,7 @@ mod running_median;
 mod samples;
 mod statistics;
 mod strip;
+mod survey;
 
 pub(crate) use edges::Edges;
 pub use live::LiveProfile;
@@ -41,6 +42,12 @@ pub struct RangeProfile {
     pub(crate) seen: Samples,
     /// Those at flying height: where the band widens with range, the points before it widened.
     pub(crate) level: Samples,
+    /// All points, those outside the band as well: what is seen behind a wall is seen through an opening, however high.
+    pub(crate) any_height: Samples,
+    /// Those above the band.
+    pub(crate) above: Samples,
+    /// Points that a cleaning took out, at any height; see [`RangeProfile::of_cleaned`].
+    pub(crate) doubtful: Samples,
     /// Mean range of all points in the profile, virtual ones left out, map units.
     pub mean_range: f64,
     /// Lower median of the same ranges, map units.

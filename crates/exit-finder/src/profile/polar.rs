@@ -37,9 +37,18 @@ impl Eye {
         })
     }
 
-    /// Distance of a polar point from the plane's origin, in plane coordinates.
-    pub(crate) fn distance_from_origin(&self, p: &Polar) -> f64 {
-        (self.centre[0] + p.offset[0]).hypot(self.centre[1] + p.offset[1])
+    /// Distance of a point from the plane's origin, in plane coordinates.
+    pub(crate) fn distance_from_origin(&self, point: [f64; 3]) -> f64 {
+        let (offset, _) = self.offset(point);
+        (self.centre[0] + offset[0]).hypot(self.centre[1] + offset[1])
+    }
+
+    /// Offset from the agent in plane coordinates, and height above it.
+    #[inline]
+    pub(crate) fn offset(&self, point: [f64; 3]) -> ([f64; 2], f64) {
+        let q = self.plane.project(point);
+        let height = self.plane.height(point) - self.height;
+        ([q[0] - self.centre[0], q[1] - self.centre[1]], height)
     }
 
     /// A point in one of the bins; counts it in `counts` when it has no bearing.
@@ -50,10 +59,8 @@ impl Eye {
         edges: &Edges,
         counts: &mut PointCounts,
     ) -> Option<Polar> {
-        let q = self.plane.project(point);
-        let (dx, dy) = (q[0] - self.centre[0], q[1] - self.centre[1]);
+        let ([dx, dy], height) = self.offset(point);
         let squared = dx * dx + dy * dy;
-        let height = self.plane.height(point) - self.height;
         if !(squared + height.abs()).is_finite() {
             counts.non_finite += 1;
             return None;

@@ -34,6 +34,17 @@ impl Samples {
         self.counts.push(ranges.len());
     }
 
+    /// Adds a bin with the ranges of two ascending lists, without merging them.
+    pub(crate) fn push_union(&mut self, a: &[u64], b: &[u64]) {
+        let len = a.len() + b.len();
+        let kept = len.min(MOST);
+        let rank = |k: usize| (2 * k + 1) * len / (2 * kept);
+        let sample = (0..kept).map(|k| f64::from_bits(of_rank(a, b, rank(k))));
+        self.ranges.extend(sample);
+        self.ends.push(self.ranges.len());
+        self.counts.push(len);
+    }
+
     /// Points in a bin.
     pub(crate) fn count(&self, bin: usize) -> usize {
         self.counts[bin]
@@ -46,9 +57,38 @@ impl Samples {
     }
 }
 
+/// The number of this rank, below their joint length, in two ascending lists. O(log n).
+fn of_rank(a: &[u64], b: &[u64], rank: usize) -> u64 {
+    // How many of those before it are in `a`: the least number after which the next of `a` is no smaller than the last of `b`.
+    let (mut low, mut high) = (rank.saturating_sub(b.len()), rank.min(a.len()));
+    while low < high {
+        let middle = usize::midpoint(low, high);
+        let too_few = a[middle] < b[rank - middle - 1];
+        low = if too_few { middle + 1 } else { low };
+        high = if too_few { high } else { middle };
+    }
+    let next = |list: &[u64], index: usize| list.get(index).copied().unwrap_or(u64::MAX);
+    next(a, low).min(next(b, rank - low))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_rank_in_two_lists_is_that_in_the_merged_one() {
+        let list = |n: u64, step: u64| -> Vec<u64> { (0..n).map(|i| i * step / 3).collect() };
+        for (n, m) in [(0, 1), (1, 0), (5, 5), (17, 40), (40, 3), (100, 100)] {
+            for (p, q) in [(1, 1), (2, 7), (9, 1)] {
+                let (a, b) = (list(n, p), list(m, q));
+                let mut merged = [&a[..], &b[..]].concat();
+                merged.sort_unstable();
+                for (rank, &expected) in merged.iter().enumerate() {
+                    assert_eq!(of_rank(&a, &b, rank), expected);
+                }
+            }
+        }
+    }
 
     #[test]
     fn few_ranges_are_kept_and_many_are_thinned_evenly() {

@@ -35,7 +35,7 @@ impl BinStats {
         let rank = ((last as f64 * quantile) as usize).min(last);
         Self {
             count: ranges.len(),
-            mean: mean(ranges),
+            mean: mean(ranges.iter().copied()),
             median: f64::from_bits(ranges[last / 2]),
             min: f64::from_bits(ranges[0]),
             quantile: f64::from_bits(ranges[rank]),
@@ -44,18 +44,19 @@ impl BinStats {
 }
 
 /// Mean of positive numbers given as bit patterns, in fixed point of 2⁻⁴⁰ of the largest.
-pub(crate) fn mean(ranges: &[u64]) -> f64 {
+pub(crate) fn mean(ranges: impl Iterator<Item = u64> + Clone) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
-    let largest = ranges.iter().copied().max().unwrap_or(0);
+    let largest = ranges.clone().max().unwrap_or(0);
     // Below this size, 10⁻²⁷⁰, the inverse would overflow.
     let power = f64::from_bits((largest & EXPONENT).max(0x080 << 52));
     let unit = power * (-40f64).exp2();
     let inverse = 1.0 / unit;
-    let sum: u128 = ranges
-        .iter()
-        .map(|&bits| u128::from((f64::from_bits(bits) * inverse) as u64))
-        .sum();
-    sum as f64 * unit / ranges.len().max(1) as f64
+    let (mut sum, mut count) = (0u128, 0u64);
+    for bits in ranges {
+        sum += u128::from((f64::from_bits(bits) * inverse) as u64);
+        count += 1;
+    }
+    sum as f64 * unit / count.max(1) as f64
 }
 
 /// Lower median of positive numbers given as bit patterns, reordering them; `None` for none. O(n).

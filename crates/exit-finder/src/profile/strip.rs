@@ -10,8 +10,6 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::polar::Polar;
-
 const SECTORS: usize = 36;
 /// Slopes are counted in cells of less than a degree up to this steepness, steeper ones at the ends.
 const CELLS: usize = 256;
@@ -42,19 +40,39 @@ impl Strip {
     pub(crate) fn height_at(&self, offset: [f64; 2], range: f64) -> f64 {
         self.pitch * range + self.tilt[0] * offset[0] + self.tilt[1] * offset[1]
     }
+}
 
-    /// The strip of a cloud seen in `n` bins; level when there are too few points to tell.
-    pub(crate) fn of(points: &[Polar], n: usize) -> Self {
+/// How many points of each sector have which slope.
+pub(crate) struct Slopes {
+    n: usize,
+    sector_of: Vec<usize>,
+    histogram: Vec<[u32; CELLS]>,
+}
+
+impl Slopes {
+    pub(crate) fn new(n: usize) -> Self {
         let sectors = SECTORS.min(n);
-        let sector_of: Vec<usize> = (0..n).map(|bin| bin * sectors / n).collect();
-        let mut histogram = vec![[0u32; CELLS]; sectors];
-        for p in points {
-            let cell = (p.height / p.range / STEEPEST * 0.5 + 0.5) * CELLS as f64;
-            histogram[sector_of[p.bin as usize]][(cell as usize).min(CELLS - 1)] += 1;
+        Self {
+            n,
+            sector_of: (0..n).map(|bin| bin * sectors / n).collect(),
+            histogram: vec![[0; CELLS]; sectors],
         }
+    }
+
+    /// Adds a point seen in a bin.
+    #[inline]
+    pub(crate) fn add(&mut self, bin: u32, slope: f64) {
+        let cell = (slope / STEEPEST * 0.5 + 0.5) * CELLS as f64;
+        self.histogram[self.sector_of[bin as usize]][(cell as usize).min(CELLS - 1)] += 1;
+    }
+
+    /// The strip; level when there are too few points to tell.
+    pub(crate) fn strip(&self) -> Strip {
+        let (n, sectors) = (self.n, self.histogram.len());
         // Where bins do not divide evenly among the sectors, a sector lies where its bins lie.
         let start = |sector: usize| (sector * n).div_ceil(sectors) as f64 * TAU / n as f64;
-        let samples: Vec<(Vector3<f64>, f64)> = histogram
+        let samples: Vec<(Vector3<f64>, f64)> = self
+            .histogram
             .iter()
             .enumerate()
             .filter_map(|(sector, cells)| {
@@ -118,31 +136,21 @@ fn fit(samples: &[(Vector3<f64>, f64)]) -> Strip {
 mod tests {
     use super::*;
 
-    fn leaning(bearings: impl Iterator<Item = u32>) -> Vec<Polar> {
-        bearings
-            .flat_map(|degrees| {
-                let bearing = f64::from(degrees).to_radians();
-                let slope = -0.1 + 0.2 * bearing.cos() - 0.15 * bearing.sin();
-                let point = move |k: u32| Polar {
-                    offset: [2.0 * bearing.cos(), 2.0 * bearing.sin()],
-                    range: 2.0,
-                    height: 2.0 * (slope + 0.1 * (f64::from(k) - 4.0)),
-                    bin: degrees,
-                };
-                (0..9).map(point)
-            })
-            .collect()
-    }
-
     #[test]
     fn a_full_turn_gives_pitch_and_tilt() {
-        let strip = Strip::of(&leaning((0..360).step_by(3)), 360);
+        let mut slopes = Slopes::new(360);
+        for degrees in (0..360u32).step_by(3) {
+            let bearing = f64::from(degrees).to_radians();
+            let slope = -0.1 + 0.2 * bearing.cos() - 0.15 * bearing.sin();
+            (0..9).for_each(|k| slopes.add(degrees, slope + 0.1 * (f64::from(k) - 4.0)));
+        }
+        let strip = slopes.strip();
         assert!((strip.pitch + 0.1).abs() < 0.02, "{strip:?}");
         assert!((strip.tilt[0] - 0.2).abs() < 0.02 && (strip.tilt[1] + 0.15).abs() < 0.02);
     }
 
     #[test]
     fn nothing_seen_is_level() {
-        assert_eq!(Strip::of(&[], 360), Strip::default());
+        assert_eq!(Slopes::new(360).strip(), Strip::default());
     }
 }

@@ -28,7 +28,7 @@ use crate::view::ExitView;
 /// Looks for exits on a profile that exists already, kept up to date by
 /// a caller. O(bins · window).
 ///
-/// `view.virtual_points` is not used here: they are part of the profile.
+/// `view.virtual_points` and `view.doubtful` are not used here: they are part of the profile.
 ///
 /// # Errors
 /// [`ExitError::Config`].

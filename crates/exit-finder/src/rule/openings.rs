@@ -33,8 +33,12 @@ const AGAINST: [f64; 2] = [1.5, 0.3];
 const LEAST: f64 = 2.0;
 /// Candidates a wall may have.
 const MOST: usize = 5;
-/// How far from the outermost point seen through an opening its jamb may be, degrees.
+/// How far from the outermost point seen through an opening its jamb may be, degrees: where the wall is well seen, and
+/// where it is blank or little is seen behind. Both are tried.
 const REACH: usize = 6;
+const FAR_REACH: usize = 18;
+/// Candidates nearer to each other than this may be one opening, degrees.
+const NEIGHBOURS: usize = 12;
 
 /// The part of a wall that lies before the agent: `len` bins from `first` on, without a break.
 pub(super) struct Stretch<'a> {
@@ -92,13 +96,28 @@ impl<'a> Stretch<'a> {
             used[start..end].fill(true);
             found.push((start, end));
         }
+        self.merged(&values, &mut found);
         found
     }
 
+    /// Adds neighbours as one: a few strays on the wall may part an opening.
+    fn merged(&self, values: &[f64], found: &mut Vec<(usize, usize)>) {
+        found.sort_unstable();
+        let parts = found.len();
+        for k in 1..parts {
+            let (start, end) = (found[k - 1].0, found[k].1);
+            let apart = found[k].0 - found[k - 1].1;
+            if apart * 360 <= NEIGHBOURS * self.n && values[start..end].iter().sum::<f64>() > LEAST
+            {
+                found.push((start, end));
+            }
+        }
+    }
+
     /// The jambs' places: the nearest bins outside that show the wall or something before it.
-    fn jambs(&self, start: usize, end: usize) -> (usize, usize) {
+    fn jambs(&self, (start, end): (usize, usize), reach: usize) -> (usize, usize) {
         let shows = |place: usize| self.votes(place).on + self.votes(place).before > 0.0;
-        let reach = (REACH * self.n / 360).max(1);
+        let reach = (reach * self.n / 360).max(1);
         let before = (0..=reach.min(start)).find(|&k| k < start && shows(start - k - 1));
         let after = (0..=reach).find(|&k| end + k < self.len && shows(end + k));
         (start - before.unwrap_or(0), end + after.unwrap_or(0))
@@ -140,27 +159,44 @@ pub(super) fn openings(
         let Some(stretch) = Stretch::of(sight, wall) else {
             continue;
         };
-        let n = sight.n();
-        for (start, end) in stretch.candidates() {
-            let jambs = stretch.jambs(start, end);
-            let (from, len) = (stretch.bin(jambs.0), jambs.1 - jambs.0);
-            let wide = (len + 2 * margin).min(n);
-            let mut around = (0..wide).map(|k| (from + 2 * n - margin.min(n) + k) % n);
-            if around.any(|bin| unseen[bin]) {
-                continue;
+        for inner in stretch.candidates() {
+            let near = stretch.jambs(inner, REACH);
+            let far = stretch.jambs(inner, FAR_REACH);
+            for jambs in std::iter::once(near).chain((far != near).then_some(far)) {
+                let run = Run {
+                    start: stretch.bin(jambs.0),
+                    len: jambs.1 - jambs.0,
+                };
+                if borders_on(run, margin, unseen) {
+                    continue;
+                }
+                let cues = Cues::of(sight, walls, index, &stretch, inner, jambs);
+                let ends = [jambs.0, jambs.1].map(|place| stretch.at(place as f64));
+                found.push(Opening::new(run, ends, &cues, profile));
             }
-            let cues = Cues::of(sight, walls, index, &stretch, (start, end), jambs);
-            let [a, b] = [jambs.0, jambs.1].map(|place| stretch.at(place as f64));
-            let unit = profile.median_range;
-            let run = Run { start: from, len };
-            found.push(Opening {
-                sector: run.sector(n),
-                width: unit * (a[0] - b[0]).hypot(a[1] - b[1]),
-                cues: cues.to_array(),
-                run,
-                jamb_ranges: [a, b].map(|jamb| unit * jamb[0].hypot(jamb[1])),
-            });
         }
     }
     found
+}
+
+/// Whether a run, or what lies within `margin` bins of it, was never looked at.
+fn borders_on(run: Run, margin: usize, unseen: &[bool]) -> bool {
+    let n = unseen.len();
+    let wide = (run.len + 2 * margin).min(n);
+    let mut around = (0..wide).map(|k| (run.start + 2 * n - margin.min(n) + k) % n);
+    around.any(|bin| unseen[bin])
+}
+
+impl Opening {
+    /// `ends` are the jambs in median ranges about the agent.
+    fn new(run: Run, [a, b]: [[f64; 2]; 2], cues: &Cues, profile: &RangeProfile) -> Self {
+        let unit = profile.median_range;
+        Self {
+            sector: run.sector(profile.bins.len()),
+            width: unit * (a[0] - b[0]).hypot(a[1] - b[1]),
+            cues: cues.to_array(),
+            run,
+            jamb_ranges: [a, b].map(|jamb| unit * jamb[0].hypot(jamb[1])),
+        }
+    }
 }

@@ -8,7 +8,7 @@
 
 use super::contour::Contour;
 use super::openings::{Opening, openings};
-use super::score::ScoreParts;
+use super::score::{ScoreParts, bias};
 use super::sight::Sight;
 use super::unseen::{points_elsewhere, unseen_bins};
 use super::wall::walls;
@@ -116,12 +116,15 @@ impl<'a> Scene<'a> {
 
     /// The likeliest openings that do not overlap. Those narrower than needed come last and only where no wider one lies.
     fn jumps(&self) -> Vec<Verdict> {
-        let judged = self.openings().into_iter().map(|opening| {
-            let parts = opening.parts();
-            (opening, parts, parts.probability())
-        });
-        let mut likely: Vec<Judged> = judged
-            .filter(|(_, _, probability)| *probability >= self.rule.min_probability)
+        let (bias, least) = (bias(), self.rule.min_probability);
+        let openings = self.openings().into_iter();
+        let mut likely: Vec<Judged> = openings
+            .filter(|opening| opening.rough_probability(bias) >= least - ROUNDING)
+            .map(|opening| {
+                let parts = opening.parts();
+                (opening, parts, parts.probability())
+            })
+            .filter(|(_, _, probability)| *probability >= least)
             .collect();
         likely.sort_by(|(a, _, p), (b, _, q)| {
             (b.width >= self.needed)
@@ -279,6 +282,8 @@ fn odds(probability: f64) -> f64 {
     probability / (1.0 - probability).max(f64::MIN_POSITIVE)
 }
 
+/// The two ways to add up the trees differ by less than this.
+const ROUNDING: f64 = 1e-9;
 /// Odds that differ by less than this factor are about equal.
 const EQUAL: f64 = std::f64::consts::E;
 /// Jambs farther by more than this factor belong to another wall.

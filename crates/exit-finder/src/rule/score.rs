@@ -1,6 +1,6 @@
 //! How likely a candidate is an opening: a boosted forest of small trees over the cues, with its parts by cue.
 //!
-//! A sum of many trees of depth three is a sum of functions of one to three cues: it can say "strays behind a textured
+//! A sum of many trees of depth four is a sum of functions of one to four cues: it can say "strays behind a textured
 //! wall" or "deep, but the side walls go on", which a weighted sum of the cues cannot. Fitted on generated rooms by
 //! `cargo run --release -p examples --example fit_exit_forest`, which prints `forest.rs`.
 //! Each split moves the value of a tree from the mean of its leaves below to that of a half; the move is
@@ -11,7 +11,7 @@ use super::forest::{BASE, TREES};
 use super::openings::Opening;
 
 /// Depth of a tree.
-pub(super) const DEPTH: usize = 3;
+pub(super) const DEPTH: usize = 4;
 
 /// A complete tree: node k has the children 2k + 1 (cue at most the threshold) and 2k + 2.
 pub(super) struct Tree {
@@ -62,10 +62,20 @@ impl Opening {
     pub fn probability(&self) -> f64 {
         self.parts().probability()
     }
+
+    /// The same up to rounding, without the parts: most candidates are told from exits at a fifth of the cost. `bias` is
+    /// [`bias`].
+    pub(super) fn rough_probability(&self, bias: f64) -> f64 {
+        let leaf = |tree: &Tree| f64::from(tree.leaf[leaf_of(tree, &self.cues)]);
+        let odds = bias + TREES.iter().map(leaf).sum::<f64>();
+        1.0 / (1.0 + (-odds).exp())
+    }
 }
 
 /// The index of the part that each cue belongs to, in the order of the cues.
-const PART_OF_CUE: [u8; CUES] = [2, 1, 1, 3, 4, 5, 5, 5, 5, 7, 6, 0, 2, 3, 4, 3, 4, 7, 2, 6];
+const PART_OF_CUE: [u8; CUES] = [
+    2, 1, 1, 3, 4, 5, 5, 5, 5, 7, 6, 0, 2, 3, 4, 3, 4, 7, 2, 6, 2, 2, 2, 6, 3, 5, 5, 6,
+];
 
 impl ScoreParts {
     /// Probability of a way out; the logistic function of the parts' sum.
@@ -110,10 +120,26 @@ impl ScoreParts {
     }
 }
 
+/// Log odds before any tree was asked.
+pub(super) fn bias() -> f64 {
+    BASE - TREES.iter().map(|tree| mean(&tree.leaf)).sum::<f64>()
+}
+
+fn leaf_of(tree: &Tree, cues: &[f64; CUES]) -> usize {
+    let mut node = 0;
+    for _ in 0..DEPTH {
+        let more = cues[usize::from(tree.cue[node])] > f64::from(tree.most[node]);
+        node = 2 * node + 1 + usize::from(more);
+    }
+    node + 1 - (1 << DEPTH)
+}
+
+fn mean(leaves: &[f32]) -> f64 {
+    leaves.iter().map(|&x| f64::from(x)).sum::<f64>() / leaves.len() as f64
+}
+
 /// Walks one tree and credits each step to its cue.
 fn credit(tree: &Tree, cues: &[f64; CUES], by_cue: &mut [f64; CUES]) {
-    let mean =
-        |leaves: &[f32]| leaves.iter().map(|&x| f64::from(x)).sum::<f64>() / leaves.len() as f64;
     let (mut node, mut leaves) = (0, &tree.leaf[..]);
     let mut value = mean(leaves);
     for _ in 0..DEPTH {

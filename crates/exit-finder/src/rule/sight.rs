@@ -45,6 +45,11 @@ pub(super) struct Sight {
     directions: Vec<[f64; 2]>,
     seen: Layer,
     level: Layer,
+    any_height: Layer,
+    above: Layer,
+    doubtful: Layer,
+    /// Share of the doubtful points among all.
+    dirt: f64,
     noise: [f64; 2],
 }
 
@@ -59,6 +64,10 @@ impl Sight {
             directions: (0..n).map(direction).collect(),
             seen: Layer::of(&profile.seen, n, profile.median_range),
             level: Layer::of(&profile.level, n, profile.median_range),
+            any_height: Layer::of(&profile.any_height, n, profile.median_range),
+            above: Layer::of(&profile.above, n, profile.median_range),
+            doubtful: Layer::of(&profile.doubtful, n, profile.median_range),
+            dirt: dirt(profile),
             noise: rule.noise,
         }
     }
@@ -75,6 +84,29 @@ impl Sight {
     /// Points of a bin at any height of the band, and how many each entry stands for.
     pub(super) fn seen(&self, bin: usize) -> (&[f64], f64) {
         (&self.seen.inverse[self.seen.span(bin)], self.seen.each[bin])
+    }
+
+    /// The same at any height at all.
+    pub(super) fn any_height(&self, bin: usize) -> (&[f64], f64) {
+        let layer = &self.any_height;
+        (&layer.inverse[layer.span(bin)], layer.each[bin])
+    }
+
+    /// The same above the band.
+    pub(super) fn above(&self, bin: usize) -> (&[f64], f64) {
+        let layer = &self.above;
+        (&layer.inverse[layer.span(bin)], layer.each[bin])
+    }
+
+    /// The same of the points that a cleaning took out.
+    pub(super) fn doubtful(&self, bin: usize) -> (&[f64], f64) {
+        let layer = &self.doubtful;
+        (&layer.inverse[layer.span(bin)], layer.each[bin])
+    }
+
+    /// Share of the map that a cleaning took out, 0 if unknown.
+    pub(super) fn dirt(&self) -> f64 {
+        self.dirt
     }
 
     /// The same at flying height, with the place of the first entry among all of them.
@@ -98,6 +130,12 @@ impl Sight {
     pub(super) fn tolerance(&self, inverse: f64) -> f64 {
         SIGMAS * self.sigma(inverse.max(0.0))
     }
+}
+
+fn dirt(profile: &RangeProfile) -> f64 {
+    let count = |samples: &Samples| (0..profile.bins.len()).map(|bin| samples.count(bin)).sum();
+    let [all, doubtful]: [usize; 2] = [count(&profile.any_height), count(&profile.doubtful)];
+    doubtful as f64 / all.max(1) as f64
 }
 
 /// A point this many standard deviations away does not lie on a wall.

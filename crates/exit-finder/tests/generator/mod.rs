@@ -10,10 +10,11 @@
 
 mod camera;
 mod corruption;
+mod curved;
 mod plan;
 
 pub use corruption::{cleaned, corrupted};
-pub use plan::Plan;
+pub use plan::{Kind, Plan};
 
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -24,6 +25,9 @@ pub struct Scan {
     pub points: Vec<[f64; 3]>,
     /// So many of them, the first ones, are genuine; outliers follow.
     pub genuine: usize,
+    /// What a cleaning took out, if it is told to the search; genuine ones first.
+    pub doubtful: Vec<[f64; 3]>,
+    pub genuine_doubtful: usize,
     /// The agent.
     pub agent: [f64; 3],
     /// The true openings as (start bearing, angular width), radians, in the map's frame.
@@ -39,7 +43,8 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Genuine points of the map as it is now at least half a metre behind the wall, seen through an opening.
+    /// Genuine points of the map as it is now, doubtful ones as well, at least half a metre behind the wall, seen
+    /// through an opening.
     pub fn evidence(&self, opening: &Opening) -> usize {
         let (sin, cos) = self.yaw.sin_cos();
         let behind = |p: &&[f64; 3]| {
@@ -52,13 +57,24 @@ impl Scan {
             };
             off < opening.width && outside(0).max(outside(1)) > 0.5
         };
-        self.points[..self.genuine].iter().filter(behind).count()
+        let doubtful = &self.doubtful[..self.genuine_doubtful];
+        let genuine = self.points[..self.genuine].iter().chain(doubtful);
+        genuine.filter(behind).count()
     }
 
     /// Keeps the points with these ascending indices.
     pub fn keep(&mut self, kept: &[usize]) {
         self.genuine = kept.partition_point(|&index| index < self.genuine);
         self.points = kept.iter().map(|&index| self.points[index]).collect();
+    }
+
+    /// Keeps the points with these ascending indices and has the search doubt the others.
+    pub fn keep_and_doubt(&mut self, kept: &[usize]) {
+        let is_kept = |index: &usize| kept.binary_search(index).is_ok();
+        let taken_out: Vec<usize> = (0..self.points.len()).filter(|i| !is_kept(i)).collect();
+        self.genuine_doubtful = taken_out.partition_point(|&index| index < self.genuine);
+        self.doubtful = taken_out.iter().map(|&index| self.points[index]).collect();
+        self.keep(kept);
     }
 }
 
@@ -79,8 +95,8 @@ pub struct Opening {
 }
 
 /// Builds a plan with `doors` doors, scans it and moves it into an arbitrary map frame.
-pub fn scan(doors: usize, dark: bool, rng: &mut Pcg64) -> Scan {
-    let plan = Plan::random(doors, dark, rng);
+pub fn scan(kind: Kind, doors: usize, dark: bool, rng: &mut Pcg64) -> Scan {
+    let plan = Plan::random(kind, doors, dark, rng);
     let points = camera::features(&plan, rng);
     let scale = rng.random_range(-1.6f64..1.6).exp();
     let yaw = rng.random_range(0.0..std::f64::consts::TAU);
@@ -94,6 +110,8 @@ pub fn scan(doors: usize, dark: bool, rng: &mut Pcg64) -> Scan {
     let agent = to_map([plan.agent[0], plan.agent[1], camera::HEIGHT]);
     Scan {
         genuine: points.len(),
+        doubtful: Vec::new(),
+        genuine_doubtful: 0,
         points: points.into_iter().map(to_map).collect(),
         agent,
         openings,

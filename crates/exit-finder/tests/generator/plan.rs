@@ -29,8 +29,25 @@ pub struct Door {
     pub seen_through: bool,
 }
 
+/// What is unusual about a room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Kind {
+    /// Straight walls, doors with lintels.
+    #[default]
+    Plain,
+    /// Walls along a superellipse: round, oval, or straight with rounded corners. No furniture.
+    Curved,
+    /// The openings are closed below by a counter.
+    Counter,
+    /// The openings reach up to the ceiling.
+    Tall,
+}
+
 /// A room with everything that can be seen from it.
 pub struct Plan {
+    pub kind: Kind,
+    /// Exponent of the superellipse, of curved rooms.
+    pub exponent: f64,
     pub size: [f64; 2],
     pub agent: [f64; 2],
     pub doors: Vec<Door>,
@@ -43,27 +60,17 @@ pub struct Plan {
 }
 
 impl Plan {
-    pub fn random(doors: usize, dark: bool, rng: &mut Pcg64) -> Self {
+    pub fn random(kind: Kind, doors: usize, dark: bool, rng: &mut Pcg64) -> Self {
+        if kind == Kind::Curved {
+            return Self::curved(doors, dark, rng);
+        }
         let size = if rng.random_bool(0.2) {
             [rng.random_range(6.0..10.0), rng.random_range(1.6..2.4)]
         } else {
             [rng.random_range(3.0..8.0), rng.random_range(2.8..6.0)]
         };
-        let floor = ([0.0; 2], size, rng.random_range(2.0..10.0));
-        let mut plan = Plan {
-            size,
-            agent: [0.0; 2],
-            doors: Vec::new(),
-            dark,
-            panels: Vec::new(),
-            floors: vec![floor],
-            boxes: Vec::new(),
-        };
-        let mut sides = [0, 1, 2, 3];
-        for i in (1..4).rev() {
-            sides.swap(i, rng.random_range(0..=i));
-        }
-        for (index, &side) in sides.iter().enumerate() {
+        let mut plan = Self::empty(kind, size, dark, rng);
+        for (index, side) in shuffled_sides(rng).into_iter().enumerate() {
             plan.build_side(side, index < doors, rng);
         }
         plan.furnish(rng);
@@ -71,8 +78,23 @@ impl Plan {
         plan
     }
 
+    pub(super) fn empty(kind: Kind, size: [f64; 2], dark: bool, rng: &mut Pcg64) -> Self {
+        let floor = ([0.0; 2], size, rng.random_range(2.0..10.0));
+        Plan {
+            kind,
+            exponent: f64::INFINITY,
+            size,
+            agent: [0.0; 2],
+            doors: Vec::new(),
+            dark,
+            panels: Vec::new(),
+            floors: vec![floor],
+            boxes: Vec::new(),
+        }
+    }
+
     /// Point of a side: `along` its length, `out` of the room.
-    fn on_side(&self, side: usize, along: f64, out: f64) -> [f64; 2] {
+    pub(super) fn on_side(&self, side: usize, along: f64, out: f64) -> [f64; 2] {
         match side {
             0 => [along, -out],
             1 => [self.size[0] + out, along],
@@ -93,12 +115,25 @@ impl Plan {
         self.wall(side, 0.0, 0.0, from, rng);
         self.wall(side, 0.0, to, length, rng);
         let lintel = [self.on_side(side, from, 0.0), self.on_side(side, to, 0.0)];
-        self.panel(lintel, [LINTEL, CEILING], 30.0);
-        for along in [from, to] {
-            let jamb = [
-                self.on_side(side, along, 0.0),
-                self.on_side(side, along, WALL),
-            ];
+        self.door(side, [from, to], lintel, rng);
+    }
+
+    /// A door from jamb to jamb and what lies behind it.
+    pub(super) fn door(
+        &mut self,
+        side: usize,
+        [from, to]: [f64; 2],
+        lintel: [[f64; 2]; 2],
+        rng: &mut Pcg64,
+    ) {
+        if self.kind == Kind::Counter {
+            self.panel(lintel, [0.0, rng.random_range(0.7..1.0)], 40.0);
+        }
+        if self.kind != Kind::Tall {
+            self.panel(lintel, [LINTEL, CEILING], 30.0);
+        }
+        for (along, jamb) in [from, to].into_iter().zip(lintel) {
+            let jamb = [jamb, self.on_side(side, along, WALL)];
             self.panel(jamb, [0.0, LINTEL], 60.0);
         }
         let seen_through = !self.dark;
@@ -160,7 +195,7 @@ impl Plan {
     }
 
     /// Cuts a wall into patches of their own texture; some are nearly blank.
-    fn patches(&mut self, [a, b]: [[f64; 2]; 2], rng: &mut Pcg64) {
+    pub(super) fn patches(&mut self, [a, b]: [[f64; 2]; 2], rng: &mut Pcg64) {
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let mut done = 0.0;
         while done < length {
@@ -181,7 +216,7 @@ impl Plan {
         }
     }
 
-    fn panel(&mut self, [a, b]: [[f64; 2]; 2], z: [f64; 2], density: f64) {
+    pub(super) fn panel(&mut self, [a, b]: [[f64; 2]; 2], z: [f64; 2], density: f64) {
         self.panels.push(Panel { a, b, z, density });
     }
 
@@ -281,6 +316,15 @@ impl Plan {
         };
         self.doors.iter().map(opening).collect()
     }
+}
+
+/// The sides in random order.
+pub(super) fn shuffled_sides(rng: &mut Pcg64) -> [usize; 4] {
+    let mut sides = [0, 1, 2, 3];
+    for i in (1..4).rev() {
+        sides.swap(i, rng.random_range(0..=i));
+    }
+    sides
 }
 
 fn near_door(door: &Door, low: [f64; 2], high: [f64; 2]) -> bool {

@@ -15,11 +15,12 @@ use exit_finder::{AffinePlane, Exit, ExitConfig, ExitView, find_exits};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::generator::{Opening, Scan, cleaned, corrupted, scan};
+use crate::generator::{Kind, Opening, Scan, cleaned, corrupted, scan};
 
 /// What the rooms of one evaluation are like.
 #[derive(Debug, Clone)]
 pub struct Suite {
+    pub kind: Kind,
     pub doors: RangeInclusive<usize>,
     pub dark: bool,
     pub rooms: u64,
@@ -35,7 +36,7 @@ impl Suite {
             .map(|room| {
                 let mut rng = Pcg64::seed_from_u64(self.first_seed + room);
                 let doors = rng.random_range(self.doors.clone());
-                let mut scan = scan(doors, self.dark, &mut rng);
+                let mut scan = scan(self.kind, doors, self.dark, &mut rng);
                 scan.points = corrupted(&scan.points, scan.agent, self.outliers, &mut rng);
                 if self.clean {
                     scan.keep(&cleaned(&scan.points, scan.agent));
@@ -179,7 +180,10 @@ pub fn evaluate(scans: &[Scan], known_scale: bool, config: &ExitConfig) -> Score
             ..*config
         };
         let plane = AffinePlane::from_up([0.0, 0.0, 1.0], scan.agent).unwrap();
-        let view = ExitView::default();
+        let view = ExitView {
+            doubtful: &scan.doubtful,
+            ..ExitView::default()
+        };
         let report = find_exits(&scan.points, scan.agent, &plane, &view, &config).unwrap();
         score.add(scan, &report.exits);
     }

@@ -97,7 +97,7 @@ fn votes(sight: &Sight, (line, away): (&Line, f64), bin: usize, claimed: &mut [b
 
 /// Points of a bin behind a wall that has this inverse range there: how many, and the sum of their inverse ranges.
 pub(super) fn behind(sight: &Sight, bin: usize, at: f64) -> (f64, f64) {
-    let (entries, each) = sight.seen(bin);
+    let (entries, each) = sight.any_height(bin);
     let least = at - sight.tolerance(at);
     let behind = entries.iter().filter(|&&entry| entry < least);
     behind.fold((0.0, 0.0), |(count, sum), entry| {

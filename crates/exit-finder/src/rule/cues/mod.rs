@@ -3,12 +3,14 @@
 //! Votes are those of [`super::wall`], lengths are in median ranges, so no cue needs a scale. Logarithms where a cue is
 //! a size. "Beside" is the wall within 0.35 median ranges of a jamb, three degrees at least.
 
+mod points;
+
 use super::openings::Stretch;
 use super::sight::Sight;
-use super::wall::{Wall, behind};
+use super::wall::Wall;
 
 /// Number of cues.
-pub const CUES: usize = 20;
+pub const CUES: usize = 28;
 
 /// Names of the cues in the order of [`super::Opening::cues`].
 pub const CUE_NAMES: [&str; CUES] = [
@@ -32,6 +34,14 @@ pub const CUE_NAMES: [&str; CUES] = [
     "continued",
     "background",
     "roughness",
+    "doubted",
+    "dirt",
+    "points",
+    "level",
+    "shallow",
+    "lintel",
+    "sill",
+    "over",
 ];
 
 /// The cues of one candidate.
@@ -77,6 +87,22 @@ pub(super) struct Cues {
     background: f64,
     /// Log of one more than the scatter of neighbouring points behind, in standard deviations of their depth.
     roughness: f64,
+    /// Log of the points behind that a cleaning took out over those that its usual share would be.
+    doubted: f64,
+    /// Share of the map that a cleaning took out.
+    dirt: f64,
+    /// Log of the points behind, not capped by bin.
+    points: f64,
+    /// Share of them in the band.
+    level: f64,
+    /// Share of the votes behind that lie less than 0.3 median ranges deep.
+    shallow: f64,
+    /// Log of one more than the points above the band that lie on the wall.
+    lintel: f64,
+    /// The same below the band.
+    sill: f64,
+    /// Share of the points behind that lie above the band.
+    over: f64,
 }
 
 /// Beside a jamb: median ranges, and degrees at least and at most.
@@ -111,6 +137,14 @@ impl Cues {
             self.continued,
             self.background,
             self.roughness,
+            self.doubted,
+            self.dirt,
+            self.points,
+            self.level,
+            self.shallow,
+            self.lintel,
+            self.sill,
+            self.over,
         ]
     }
 
@@ -165,6 +199,7 @@ impl Scene<'_> {
         let expected = bins * (sides[0].votes[0] + sides[1].votes[0])
             / ((sides[0].bins + sides[1].bins).max(1) as f64);
         let (explained, continued) = self.other_walls(sums.through);
+        let points = self.points_behind(Sight::any_height);
         Cues {
             votes: sums.through.max(f64::MIN_POSITIVE).ln(),
             share: sums.through / (sums.through + sums.on).max(f64::MIN_POSITIVE),
@@ -186,6 +221,14 @@ impl Scene<'_> {
             continued,
             background: self.background(),
             roughness: self.roughness(),
+            doubted: self.doubted(),
+            dirt: self.sight.dirt(),
+            points: points.ln_1p(),
+            level: (1.0 + self.points_behind(Sight::seen)) / (1.0 + points),
+            shallow: self.shallow(),
+            lintel: self.points_on(Sight::above).ln_1p(),
+            sill: self.sill().ln_1p(),
+            over: self.points_behind(Sight::above) / (1.0 + points),
         }
     }
 
@@ -247,7 +290,7 @@ impl Scene<'_> {
             let direction = sight.direction(bin);
             let at = line.inverse_range(direction);
             let least = at - sight.tolerance(at);
-            let (entries, _) = sight.seen(bin);
+            let (entries, _) = sight.any_height(bin);
             let (mut all, mut on) = (0, 0);
             for entry in entries.iter().filter(|&&entry| entry < least) {
                 all += 1;
@@ -338,59 +381,7 @@ impl Scene<'_> {
             .min(depth(end - third..end))
             .min(1.0)
     }
-
-    fn background(&self) -> f64 {
-        let stretch = self.stretch;
-        let points = |place: usize| {
-            let bin = stretch.bin(place);
-            let at = stretch.wall.line.inverse_range(self.sight.direction(bin));
-            behind(self.sight, bin, at).0
-        };
-        let here: f64 = (self.inner.0..self.inner.1).map(points).sum();
-        let (mut strays, mut bins) = (0.0, 0.0);
-        for place in 0..stretch.len {
-            let outside = place + 2 < self.inner.0 || place >= self.inner.1 + 2;
-            if outside && stretch.votes(place).on >= 1.0 {
-                strays += points(place);
-                bins += 1.0;
-            }
-        }
-        let usual = (strays + 0.5) / (bins + 1.0) * (self.inner.1 - self.inner.0) as f64;
-        ((here + 0.5) / (usual + 0.5)).ln()
-    }
-
-    /// Median over the points behind of the median difference from the five before and after.
-    fn roughness(&self) -> f64 {
-        let mut entries: Vec<f64> = Vec::new();
-        for place in self.inner.0..self.inner.1 {
-            let bin = self.stretch.bin(place);
-            let line = &self.stretch.wall.line;
-            let at = line.inverse_range(self.sight.direction(bin));
-            let least = at - self.sight.tolerance(at);
-            let seen = self.sight.seen(bin).0.iter();
-            entries.extend(seen.filter(|&&entry| entry < least));
-        }
-        let scatter = |k: usize| {
-            let near = k.saturating_sub(5)..(k + 6).min(entries.len());
-            let (mut apart, mut len) = ([0.0; 10], 0);
-            for other in near.filter(|&other| other != k) {
-                apart[len] = (entries[other] - entries[k]).abs();
-                len += 1;
-            }
-            apart[..len].sort_unstable_by(f64::total_cmp);
-            let middle = len.checked_sub(1).map(|last| apart[last / 2]);
-            middle.map_or(ROUGHEST, |apart| apart / self.sight.sigma(entries[k]))
-        };
-        // A hundred of them tell.
-        let places = (0..entries.len()).step_by(entries.len().div_ceil(100).max(1));
-        let mut scatters: Vec<f64> = places.map(scatter).collect();
-        let scatter = crate::profile::median(&mut scatters).unwrap_or(ROUGHEST);
-        scatter.min(ROUGHEST).ln_1p()
-    }
 }
-
-/// Scatter is counted up to so many standard deviations.
-const ROUGHEST: f64 = 20.0;
 
 /// The wall beside one jamb.
 #[derive(Debug, Clone, Copy)]
