@@ -86,6 +86,20 @@ impl GrayImage {
     }
 }
 
+/// A copy of the pixels.
+impl From<GrayView<'_>> for GrayImage {
+    fn from(view: GrayView<'_>) -> Self {
+        let (width, height) = (view.width(), view.height());
+        let mut data = Vec::with_capacity(width * height);
+        (0..height).for_each(|y| data.extend_from_slice(view.row(y)));
+        Self {
+            data,
+            width,
+            height,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -22,13 +22,8 @@ impl Pyramid {
         reason = "sides of images are small"
     )]
     pub fn new(view: &GrayView<'_>, count: usize, factor: f64, smallest_side: usize) -> Self {
-        let mut base = GrayImage::filled(view.width(), view.height(), 0);
-        let lines = base.pixels_mut().chunks_exact_mut(view.width());
-        lines
-            .enumerate()
-            .for_each(|(y, line)| line.copy_from_slice(view.row(y)));
         let mut pyramid = Self {
-            levels: vec![base],
+            levels: vec![GrayImage::from(*view)],
             scales: vec![[1.0, 1.0]],
         };
         let mut scale = 1.0;

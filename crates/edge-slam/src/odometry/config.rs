@@ -1,6 +1,6 @@
 //! What the odometry can be told, and what it refuses.
 
-use crate::feature::{KltConfig, MatchConfig, OrbConfig, OrbConfigError, Selection};
+use crate::feature::{AlignConfig, KltConfig, MatchConfig, OrbConfig, OrbConfigError, Selection};
 use crate::pnp::PnpConfig;
 use crate::two_view::TwoViewConfig;
 
@@ -23,13 +23,17 @@ pub struct OdometryConfig {
     pub tracker: Tracker,
     /// Matching of a frame with its keyframe.
     pub matching: MatchConfig,
+    /// How the places of matches are made to agree below a pixel; `None` leaves them where the detector found them. Of use with
+    /// [`Tracker::Orb`] only: KLT follows patches anyway. Default: [`AlignConfig::default`].
+    pub align: Option<AlignConfig>,
     /// Monocular start and recovery.
     pub two_view: TwoViewConfig,
     /// Pose of a frame.
     pub pnp: PnpConfig,
     /// Share of the keyframe's first count of inliers under which a new keyframe is made, 0..=1. Default 0.6.
     pub keyframe_share: f64,
-    /// Inliers under which a new keyframe is made. Default 60.
+    /// Inliers under which a new keyframe is made; without measured depth only when they are also a smaller share of the most than 0.85: a
+    /// keyframe that began with few points would give way to every frame, none of them far enough from the next to triangulate. Default 60.
     pub keyframe_inliers: usize,
     /// Points farther than this are left out, metres or units, > 0. Default 10.
     pub farthest: f64,
@@ -48,6 +52,7 @@ impl Default for OdometryConfig {
             },
             tracker: Tracker::default(),
             matching: MatchConfig::default(),
+            align: Some(AlignConfig::default()),
             two_view: TwoViewConfig::default(),
             pnp: PnpConfig {
                 min_inliers: 15,

@@ -11,8 +11,10 @@ use super::{OdometryConfig, OdometryError, Tracker};
 use crate::Frame;
 use crate::camera::Camera;
 use crate::feature::{
-    Features, KltConfig, Match, OrbExtractor, klt_pyramid, match_descriptors, track_points,
+    AlignConfig, Features, KltConfig, Match, OrbExtractor, align_matches, klt_pyramid,
+    match_descriptors, track_points,
 };
+use crate::image::GrayImage;
 
 /// Finds features, and finds them again.
 #[derive(Debug, Clone)]
@@ -43,10 +45,12 @@ impl FrontEnd {
     pub(super) fn follow(&self, keyframe: &mut Keyframe, frame: &Frame<'_>) -> (Sight, Vec<Match>) {
         match self.config.tracker {
             Tracker::Orb => {
-                let sight = self.first_sight(frame);
-                let [before, now] = [&keyframe.sight, &sight].map(|s| &s.features.descriptors);
-                let matches = match_descriptors(before, now, &self.config.matching);
-                (sight, matches)
+                let mut features = self.extractor.extract(&frame.image);
+                let before = &keyframe.sight.features.descriptors;
+                let matches =
+                    match_descriptors(before, &features.descriptors, &self.config.matching);
+                self.align(keyframe, frame, &matches, &mut features);
+                (self.sight(frame, features), matches)
             }
             Tracker::Klt(config) => self.trace(keyframe, frame, &config),
         }
@@ -60,7 +64,9 @@ impl FrontEnd {
         frame: &Frame<'_>,
     ) -> Keyframe {
         let Tracker::Klt(_) = self.config.tracker else {
-            return Keyframe::new(sight, pose);
+            let mut keyframe = Keyframe::new(sight, pose);
+            keyframe.image = self.config.align.map(|_| GrayImage::from(frame.image));
+            return keyframe;
         };
         if sight.features.keypoints.len() < self.config.orb.features {
             self.fill(&mut sight, frame);
@@ -69,6 +75,33 @@ impl FrontEnd {
         keyframe.pyramid = Some(klt_pyramid(&frame.image));
         keyframe.seen_at = places(&keyframe.sight.features);
         keyframe
+    }
+
+    /// Moves the features of the frame to where they show the same as those of the keyframe. Their pyramid level stays what it was, and with
+    /// it how far their places are trusted: what a large patch shows changes more between views.
+    fn align(
+        &self,
+        keyframe: &Keyframe,
+        frame: &Frame<'_>,
+        matches: &[Match],
+        features: &mut Features,
+    ) {
+        let (Some(config), Some(image)) = (&self.config.align, &keyframe.image) else {
+            return;
+        };
+        let config = AlignConfig {
+            scale_factor: self.config.orb.scale_factor,
+            ..*config
+        };
+        let images = [&image.view(), &frame.image];
+        let keypoints = [&keyframe.sight.features.keypoints, &features.keypoints];
+        let found = align_matches(images, keypoints.map(Vec::as_slice), matches, &config);
+        for (Match { second, .. }, place) in matches.iter().zip(found) {
+            let keypoint = &mut features.keypoints[*second];
+            #[expect(clippy::cast_possible_truncation, reason = "pixels")]
+            let [x, y] = place.second.map(|pixel| pixel as f32);
+            (keypoint.x, keypoint.y) = (x, y);
+        }
     }
 
     fn sight(&self, frame: &Frame<'_>, features: Features) -> Sight {

@@ -51,7 +51,10 @@ impl MapBuilder {
         for (point, slot) in keyframe.sight.points.iter().zip(&mut keyframe.in_map) {
             let Some(point) = point else { continue };
             if let Some(known) = slot.and_then(|index| self.map.points.get_mut(index)) {
-                if known.observers.last() != Some(&id) {
+                if known.observers == [id] {
+                    // It may have been triangulated again from farther aside.
+                    known.position = keyframe.world_from_camera * point;
+                } else if known.observers.last() != Some(&id) {
                     known.observers.push(id);
                 }
                 continue;

@@ -3,15 +3,17 @@
 //! 1. Features; matches with the keyframe (ORB), or its patches followed (KLT).
 //! 2. Keyframe with points: pose by PnP from the last one; if that fails, again from the two-view rotation.
 //!    Keyframe without points (monocular start): two-view pose once it is trusted; its median depth is the unit.
-//! 3. Few inliers left: this frame becomes the keyframe; it inherits points, and gets new ones by depth or
+//! 3. Without measured depth, features of the keyframe that have no point, or one under a smaller angle, are triangulated with the
+//!    frame. (Beside measured depth this was tried: points from a hand's tremble spoil the others.)
+//! 4. Few inliers left: this frame becomes the keyframe; it inherits points, and gets new ones by depth or
 //!    triangulation.
-//! 4. Lost for too long: a new epoch begins at the last known pose.
+//! 5. Lost for too long: a new epoch begins at the last known pose.
 
 use std::collections::VecDeque;
 
 use core::time::Duration;
 
-use nalgebra::{Isometry3, Point3};
+use nalgebra::Isometry3;
 use rand::Rng;
 use slam_bridge::{Map, SlamSource, SlamUpdate, TrackingState};
 
@@ -25,7 +27,7 @@ use crate::camera::Camera;
 use crate::depth::DepthImage;
 use crate::feature::Match;
 use crate::pnp::{PnpPose, refine_pose};
-use crate::two_view::{TwoView, estimate_two_view};
+use crate::two_view::{Triangulated, TwoView, estimate_two_view};
 
 /// What became of a frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -162,24 +164,24 @@ impl Odometry {
         let Some(found) = found.ok().filter(TwoView::is_confident) else {
             return;
         };
-        let good = |&(_, point): &(usize, Point3<f64>)| point.z > 0.0;
-        let points: Vec<(usize, Point3<f64>)> = found
+        let good = |(_, found): &(usize, Triangulated)| found.point.z > 0.0;
+        let points: Vec<(usize, Triangulated)> = found
             .inliers
             .iter()
             .zip(&found.points)
             .filter_map(|(&i, point)| {
                 let point = point.filter(|point| point.angle >= self.config.least_angle)?;
-                Some((matches[index[i]].first, point.point))
+                Some((matches[index[i]].first, point))
             })
             .filter(good)
             .collect();
-        let mut depths: Vec<f64> = points.iter().map(|(_, point)| point.z).collect();
+        let mut depths: Vec<f64> = points.iter().map(|(_, found)| found.point.z).collect();
         depths.sort_by(f64::total_cmp);
         let Some(&unit) = depths.get(depths.len() / 2) else {
             return;
         };
-        for (slot, point) in points {
-            keyframe.sight.points[slot] = Some(point / unit);
+        for (slot, found) in points {
+            keyframe.set_point(slot, found.point / unit, found.angle);
         }
         self.frame_from_keyframe = found.second_from_first;
         self.frame_from_keyframe.translation.vector /= unit;
@@ -222,17 +224,17 @@ impl Odometry {
         let pose = keyframe.world_from_camera * found.camera_from_world.inverse();
         let inliers = found.inliers.len();
         keyframe.most_inliers = keyframe.most_inliers.max(inliers);
+        let least_angle = self.config.least_angle;
+        if !self.is_metric {
+            let pose = &self.frame_from_keyframe;
+            keyframe.deepen(&sight, matches, pose, camera, least_angle);
+        }
         let is_keyframe = self.wants_keyframe(&keyframe, inliers);
         if is_keyframe {
+            self.builder.complete(&mut keyframe);
             let agreeing: Vec<usize> = found.inliers.iter().map(|&i| index[i]).collect();
             let mut next = self.front_end.keyframe(sight, pose, frame);
-            keyframe.hand_over(
-                &mut next,
-                matches,
-                &agreeing,
-                camera,
-                self.config.least_angle,
-            );
+            keyframe.hand_over(&mut next, matches, &agreeing, camera, least_angle);
             self.frame_from_keyframe = Isometry3::identity();
             self.builder.add(&mut next, frame.time, self.is_metric);
             keyframe = next;
@@ -250,7 +252,9 @@ impl Odometry {
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
     fn wants_keyframe(&self, keyframe: &Keyframe, inliers: usize) -> bool {
         let share = inliers as f64 / keyframe.most_inliers.max(1) as f64;
-        share < self.config.keyframe_share || inliers < self.config.keyframe_inliers
+        let would_gain = self.is_metric || share < LARGE_SHARE;
+        let are_few = inliers < self.config.keyframe_inliers && would_gain;
+        share < self.config.keyframe_share || are_few
     }
 
     /// A frame without a pose.
@@ -283,6 +287,9 @@ impl Odometry {
         }
     }
 }
+
+/// Without measured depth, a successor of a keyframe of which a frame still shows so much would know hardly more.
+const LARGE_SHARE: f64 = 0.85;
 
 /// A pose far outside the room is a failure, whatever its residuals.
 fn is_plausible(pose: &PnpPose) -> bool {
