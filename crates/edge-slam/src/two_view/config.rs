@@ -29,6 +29,10 @@ pub struct TwoViewConfig {
     /// 0.2 degrees: 99 % of the pairs of a hand-held sequence that are 0.15 m apart have more, and errors of lens and
     /// shutter, which a turning camera shows as parallax, make less.
     pub min_residual_parallax: f64,
+    /// What is added to `min_residual_parallax` per radian of turn, >= 0: a camera model that is not quite right shows a turn
+    /// as parallax in proportion. Default 0.01: what a focal length that is wrong by a tenth leaves at most (simulated turns
+    /// about either axis, a picture of 63 by 49 degrees; half as much for a twentieth).
+    pub residual_per_turn: f64,
     /// Greatest standard deviation of the direction of travel, radians, > 0. Default 10 degrees, under which 98 % of
     /// the same pairs are.
     pub max_direction_sigma: f64,
@@ -49,6 +53,7 @@ impl Default for TwoViewConfig {
             min_inlier_share: 0.4,
             min_parallax: 1.5_f64.to_radians(),
             min_residual_parallax: 0.2_f64.to_radians(),
+            residual_per_turn: 0.01,
             max_direction_sigma: 10_f64.to_radians(),
             planar_share: 0.45,
             rotation_share: 0.8,

@@ -49,11 +49,12 @@ impl Matches {
         let count = found.inliers.len() as f64;
         let front_share = found.inliers.iter().filter(in_front).count() as f64 / count;
         let inlier_share = count / self.first.len() as f64;
+        let bent = config.residual_per_turn * pose.rotation.angle();
         let is_weak = front_share < config.min_in_front
             || inlier_share < config.min_inlier_share
             || found.inliers.len() < config.min_confident_inliers
             || found.parallax < config.min_parallax
-            || found.residual_parallax < config.min_residual_parallax
+            || found.residual_parallax < config.min_residual_parallax + bent
             || found.direction_sigma > config.max_direction_sigma;
         if found.rotation_share > config.rotation_share {
             Geometry::PureRotation
