@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
         ("RRT-Connect, taut", measure(&queries, double, pulled)?),
         (
-            "**`find_path`** (RRT-Connect and taut, best of 6)",
+            "**`find_path`** (RRT-Connect and taut, then anything shorter)",
             measure(&queries, best_of_six, |path| Ok(unrefined(path)))?,
         ),
         ("RRT-Connect, rope", measure(&queries, double, roped)?),
