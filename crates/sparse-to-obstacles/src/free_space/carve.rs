@@ -5,10 +5,9 @@
 //! added, layer by layer along the axis that the ray mostly follows.
 
 use super::config::FreeSpaceConfig;
-use super::evidence::{Evidence, KeyframeId};
+use super::evidence::{Evidence, KeyframeId, PointId, Sighting};
 use super::grid::Grid;
 use super::interpolate;
-use super::ray::Ray;
 use crate::vector::{Vec3, distance, dot, lerp, norm_squared, scale, sub};
 
 pub(super) struct Carver<'a> {
@@ -34,7 +33,8 @@ impl<'a> Carver<'a> {
         }
     }
 
-    pub(super) fn carve(&mut self, ray: &Ray, keyframe: KeyframeId) {
+    pub(super) fn carve(&mut self, sighting: &Sighting, keyframe: KeyframeId) {
+        let Sighting { ray, point } = *sighting;
         // Numbers wrap after four billion rays and skip 0, which means none.
         *self.rays = self.rays.checked_add(1).unwrap_or(1);
         let length = distance(ray.origin, ray.end);
@@ -49,27 +49,30 @@ impl<'a> Carver<'a> {
         }
         let end = lerp(ray.origin, ray.end, carved / length);
         let number = *self.rays;
-        self.follow(ray.origin, end, |voxel| voxel.cross(keyframe, number));
+        self.follow(ray.origin, end, |voxel| {
+            voxel.cross(keyframe, point, number)
+        });
         let widening = self.config.patch_half_angle.tan();
         if carved * widening > 0.5 * self.grid.resolution {
-            self.widen(ray.origin, end, widening, keyframe);
+            self.widen(ray.origin, end, widening, (keyframe, point));
         }
     }
 
     /// Carves what lies between neighbouring rays of one keyframe: the voxels whose centres lie there.
-    pub(super) fn carve_between(&mut self, rays: &[Ray], keyframe: KeyframeId) {
+    pub(super) fn carve_between(&mut self, sightings: &[Sighting], keyframe: KeyframeId) {
         if self.config.max_triangle_angle <= 0.0 {
             return;
         }
-        let Some(panorama) = interpolate::between(rays, self.config) else {
+        let Some(panorama) = interpolate::between(sightings, self.config) else {
             return;
         };
         let (low, high) = panorama.extent();
         for (first, indices) in self.grid.around(low, high, 0.0).rows(self.grid) {
             let [x, y, z] = self.grid.centre(first);
             for (step, voxel) in self.evidence[indices].iter_mut().enumerate() {
-                if panorama.sees_through([x, y, z + step as f64 * self.grid.resolution]) {
-                    voxel.witness(keyframe);
+                let place = [x, y, z + step as f64 * self.grid.resolution];
+                if let Some(corners) = panorama.seen_through(place) {
+                    voxel.witness(keyframe, corners);
                 }
             }
         }
@@ -119,7 +122,13 @@ impl<'a> Carver<'a> {
     }
 
     /// Marks the voxels whose centres lie in the cone.
-    fn widen(&mut self, from: Vec3, to: Vec3, widening: f64, keyframe: KeyframeId) {
+    fn widen(
+        &mut self,
+        from: Vec3,
+        to: Vec3,
+        widening: f64,
+        (keyframe, point): (KeyframeId, PointId),
+    ) {
         let along = sub(to, from);
         let length_squared = norm_squared(along);
         let main = (1..3).fold(0, |best, axis| {
@@ -158,7 +167,7 @@ impl<'a> Carver<'a> {
                         && aside <= radius_squared
                         && let Some(index) = self.grid.index(cell)
                     {
-                        self.evidence[index].cross(keyframe, *self.rays);
+                        self.evidence[index].cross(keyframe, point, *self.rays);
                     }
                 }
             }

@@ -17,8 +17,9 @@ pub struct FreeSpaceConfig {
     /// A ray is carved no farther than this from its keyframe. More than 0. Default 8 m. Keeps points at
     /// a wild range from growing the grid.
     pub max_range: f64,
-    /// A voxel is proven only if rays of at least this many keyframes crossed it. 1 to 4. Default 2: one
-    /// wrong match cannot open a wall.
+    /// A voxel is proven only if at least this many keyframes saw through it. 1 to 4. Default 2: one wrong match cannot
+    /// open a wall. From 2 on what was seen only between rays must also stay seen without any one of the points: the triangles
+    /// at a wrong point that several keyframes agree on opened the blank end of a simulated wall.
     pub min_keyframes: usize,
     /// Least distance between the centre of a moving ball and a surface point; where the ball's radius
     /// is larger, that counts. At least 0. Default 0.2 m.
@@ -53,7 +54,7 @@ pub struct FreeSpaceConfig {
     /// something solid, with 32 it were 2 of 1,311. See
     /// [`FreeSpace::contradicts`](crate::FreeSpace::contradicts).
     pub contradiction_log_odds: f64,
-    /// Most voxels that the grid may hold; each costs 21 bytes. At least 1. Default 8 million (170 MB).
+    /// Most voxels that the grid may hold; each costs 45 bytes. At least 1. Default 8 million (360 MB).
     pub max_voxels: usize,
 }
 

@@ -1,14 +1,18 @@
 //! What is known about a voxel: which keyframes saw through it, and the rays for and against it.
 
 use super::config::FreeSpaceConfig;
-use super::error::FreeSpaceError;
 use super::ray::Ray;
-use std::collections::BTreeMap;
+use crate::vector::Vec3;
+use std::collections::{BTreeMap, HashMap};
 
 /// The number of a keyframe, from 1.
 pub(super) type KeyframeId = u16;
+/// The number of a point that rays end at, from 1.
+pub(super) type PointId = u32;
 
 const NOBODY: KeyframeId = 0;
+/// No point.
+pub(super) const NO_POINT: PointId = 0;
 const PRESENCE: KeyframeId = KeyframeId::MAX;
 
 /// Evidence about one voxel.
@@ -16,6 +20,10 @@ const PRESENCE: KeyframeId = KeyframeId::MAX;
 pub(super) struct Evidence {
     /// The first keyframes that saw through, each once. A presence fills all.
     witnesses: [KeyframeId; 4],
+    /// Those of them that have a ray of their own here.
+    by_ray: [KeyframeId; 4],
+    /// The points that all sightings have in common: of a ray its end, of a triangle its corners.
+    shared: [PointId; 3],
     crossed: u16,
     ended: u16,
     /// The last ray that was counted.
@@ -25,26 +33,29 @@ pub(super) struct Evidence {
 impl Evidence {
     /// Counts a crossing ray, once however often it is reported in a row.
     #[inline]
-    pub(super) fn cross(&mut self, keyframe: KeyframeId, ray: u32) {
+    pub(super) fn cross(&mut self, keyframe: KeyframeId, point: PointId, ray: u32) {
         if self.last_ray == ray {
             return;
         }
         self.last_ray = ray;
         self.crossed = self.crossed.saturating_add(1);
-        self.witness(keyframe);
+        remember(&mut self.by_ray, keyframe);
+        self.witness(keyframe, [point, NO_POINT, NO_POINT]);
     }
 
-    /// Remembers a keyframe that saw through.
+    /// Remembers a keyframe that saw through, if these points are where the map has them.
     #[inline]
-    pub(super) fn witness(&mut self, keyframe: KeyframeId) {
-        for witness in &mut self.witnesses {
-            if *witness == NOBODY {
-                *witness = keyframe;
-            }
-            if *witness == keyframe {
-                return;
+    pub(super) fn witness(&mut self, keyframe: KeyframeId, points: [PointId; 3]) {
+        if self.witnesses[0] == NOBODY {
+            self.shared = points;
+        } else if self.shared != [NO_POINT; 3] {
+            for point in &mut self.shared {
+                if !points.contains(point) {
+                    *point = NO_POINT;
+                }
             }
         }
+        remember(&mut self.witnesses, keyframe);
     }
 
     pub(super) fn end(&mut self) {
@@ -56,10 +67,14 @@ impl Evidence {
     }
 
     pub(super) fn is_free(&self, config: &FreeSpaceConfig) -> bool {
-        let needed = config.min_keyframes.clamp(1, self.witnesses.len());
-        let seen = self.witnesses[needed - 1] != NOBODY;
-        let present = self.witnesses[0] == PRESENCE;
-        seen && (present || self.log_odds(config) <= config.free_log_odds)
+        if self.witnesses[0] == PRESENCE {
+            return true;
+        }
+        let last = config.min_keyframes.clamp(1, self.witnesses.len()) - 1;
+        // One wrong point is a corner of many triangles, which together open a window in whatever stands before it.
+        let corroborated = last == 0 || self.shared == [NO_POINT; 3];
+        let seen = self.by_ray[last] != NOBODY || corroborated && self.witnesses[last] != NOBODY;
+        seen && self.log_odds(config) <= config.free_log_odds
     }
 
     /// Log-odds of being occupied.
@@ -68,50 +83,70 @@ impl Evidence {
     }
 }
 
-/// The keyframes met so far, told apart by their positions.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Keyframes {
-    ids: BTreeMap<[u64; 3], KeyframeId>,
+/// Adds a keyframe to a list that holds each once, if there is room.
+#[inline]
+fn remember(list: &mut [KeyframeId; 4], keyframe: KeyframeId) {
+    for known in list {
+        if *known == NOBODY {
+            *known = keyframe;
+        }
+        if *known == keyframe {
+            return;
+        }
+    }
 }
 
-impl Keyframes {
+/// The keyframes or points met so far, told apart by their positions.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    numbers: HashMap<[u64; 3], u32>,
+}
+
+impl Known {
     pub(super) fn len(&self) -> usize {
-        self.ids.len()
+        self.numbers.len()
     }
 
-    /// The keyframe of each ray, new ones numbered in the order of the rays.
-    pub(super) fn identify(&mut self, rays: &[Ray]) -> Result<Vec<KeyframeId>, FreeSpaceError> {
-        let mut last: Option<([u64; 3], KeyframeId)> = None;
-        let mut ids = Vec::with_capacity(rays.len());
-        for ray in rays {
+    /// The number of each place, from 1, new ones in their order.
+    pub(super) fn number(&mut self, places: impl Iterator<Item = Vec3>) -> Vec<u32> {
+        let mut last: Option<([u64; 3], u32)> = None;
+        let number = |place: Vec3| {
             // Adding 0 makes -0 and 0 the same place.
-            let key = ray.origin.map(|c| (c + 0.0).to_bits());
-            let id = match last {
-                Some((former, id)) if former == key => id,
+            let key = place.map(|c| (c + 0.0).to_bits());
+            let number = match last {
+                Some((former, number)) if former == key => number,
                 _ => {
-                    let next = self.ids.len() + 1;
-                    if next >= usize::from(PRESENCE) && !self.ids.contains_key(&key) {
-                        let max = usize::from(PRESENCE) - 1;
-                        return Err(FreeSpaceError::TooManyKeyframes { max });
-                    }
-                    *self.ids.entry(key).or_insert(next as KeyframeId)
+                    let next = self.numbers.len() as u32 + 1;
+                    *self.numbers.entry(key).or_insert(next)
                 }
             };
-            last = Some((key, id));
-            ids.push(id);
-        }
-        Ok(ids)
+            last = Some((key, number));
+            number
+        };
+        places.map(number).collect()
     }
+}
+
+/// A ray and the point that it ends at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sighting {
+    pub(super) ray: Ray,
+    pub(super) point: PointId,
 }
 
 /// The rays of each keyframe, in their order.
 pub(super) fn by_keyframe(
     rays: &[Ray],
-    ids: &[KeyframeId],
-) -> impl Iterator<Item = (KeyframeId, Vec<Ray>)> {
-    let mut groups: BTreeMap<KeyframeId, Vec<Ray>> = BTreeMap::new();
-    for (ray, &id) in rays.iter().zip(ids) {
-        groups.entry(id).or_default().push(*ray);
+    keyframes: &[u32],
+    points: &[PointId],
+) -> impl Iterator<Item = (KeyframeId, Vec<Sighting>)> {
+    let mut groups: BTreeMap<KeyframeId, Vec<Sighting>> = BTreeMap::new();
+    for ((&ray, &keyframe), &point) in rays.iter().zip(keyframes).zip(points) {
+        let group = groups.entry(keyframe as KeyframeId).or_default();
+        group.push(Sighting { ray, point });
     }
     groups.into_iter()
 }
+
+/// Most keyframes that can be told apart.
+pub(super) const MOST_KEYFRAMES: usize = PRESENCE as usize - 1;

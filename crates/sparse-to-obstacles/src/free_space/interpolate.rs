@@ -7,13 +7,15 @@
 //! them are found.
 
 use super::config::FreeSpaceConfig;
+use super::evidence::Sighting;
 use super::panorama::{Facet, Panorama, Projection};
 use super::ray::Ray;
 use crate::vector::{Vec3, add, cross, distance, dot, scale, sub, unit};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 /// What was seen through between the rays, all from one place; `None` where no triangle is usable.
-pub(super) fn between(rays: &[Ray], config: &FreeSpaceConfig) -> Option<Panorama> {
+pub(super) fn between(sightings: &[Sighting], config: &FreeSpaceConfig) -> Option<Panorama> {
+    let rays: Vec<Ray> = sightings.iter().map(|sighting| sighting.ray).collect();
     let origin = rays.first()?.origin;
     let directions: Vec<Option<Vec3>> = rays
         .iter()
@@ -24,7 +26,7 @@ pub(super) fn between(rays: &[Ray], config: &FreeSpaceConfig) -> Option<Panorama
         .flatten()
         .fold([0.0; 3], |sum, &direction| add(sum, direction));
     let projection = Projection::towards(unit(sum).unwrap_or([0.0, 0.0, 1.0]));
-    let triangulation = triangulate(rays, &directions, &projection)?;
+    let triangulation = triangulate(&rays, &directions, &projection)?;
     let facets: Vec<Facet> = triangulation
         .inner_faces()
         .filter_map(|face| {
@@ -34,6 +36,7 @@ pub(super) fn between(rays: &[Ray], config: &FreeSpaceConfig) -> Option<Panorama
                 Facet::new(
                     triangle.map(|ray| carved(&ray, config)),
                     face.positions().map(|position| [position.x, position.y]),
+                    vertices.map(|ray| sightings[ray].point),
                 )
             })?
         })

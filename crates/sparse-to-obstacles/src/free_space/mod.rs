@@ -22,7 +22,7 @@ use crate::point::{PointLike, finite_points, is_finite};
 use crate::vector::{Vec3, max, min};
 use carve::Carver;
 use distance_field::DistanceField;
-use evidence::{Evidence, Keyframes};
+use evidence::{Evidence, Known};
 use grid::{Cell, Grid};
 use surface::Surface;
 
@@ -38,7 +38,8 @@ pub struct FreeSpace {
     config: FreeSpaceConfig,
     grid: Grid,
     evidence: Vec<Evidence>,
-    keyframes: Keyframes,
+    keyframes: Known,
+    points: Known,
     rays: u32,
     surface: Surface,
     presence: Vec<(Vec3, f64)>,
@@ -85,7 +86,8 @@ impl FreeSpace {
             config: config.clone(),
             grid: Grid::empty(config.resolution),
             evidence: Vec::new(),
-            keyframes: Keyframes::default(),
+            keyframes: Known::default(),
+            points: Known::default(),
             rays: 0,
             surface: Surface::default(),
             presence: Vec::new(),
@@ -115,18 +117,23 @@ impl FreeSpace {
         let surface =
             finite_points(surface).map_err(|index| FreeSpaceError::PointNotFinite { index })?;
         let mut keyframes = self.keyframes.clone();
-        let ids = keyframes.identify(&rays)?;
+        let ids = keyframes.number(rays.iter().map(|ray| ray.origin));
+        if keyframes.len() > evidence::MOST_KEYFRAMES {
+            let max = evidence::MOST_KEYFRAMES;
+            return Err(FreeSpaceError::TooManyKeyframes { max });
+        }
         let config = self.config.clone();
         self.reserve(rays.iter().flat_map(|ray| [ray.origin, config.reach(ray)]))?;
         self.keyframes = keyframes;
+        let points = self.points.number(rays.iter().map(|ray| ray.end));
         let mut carver = Carver::new(&config, &self.grid, &mut self.evidence, &mut self.rays);
-        for (keyframe, mut rays) in evidence::by_keyframe(&rays, &ids) {
+        for (keyframe, mut sightings) in evidence::by_keyframe(&rays, &ids, &points) {
             // Rays in similar directions cross the same voxels while they are at hand.
-            rays.sort_by_cached_key(Ray::sector);
-            for ray in &rays {
-                carver.carve(ray, keyframe);
+            sightings.sort_by_cached_key(|sighting| sighting.ray.sector());
+            for sighting in &sightings {
+                carver.carve(sighting, keyframe);
             }
-            carver.carve_between(&rays, keyframe);
+            carver.carve_between(&sightings, keyframe);
         }
         let presence = &self.presence;
         let stands = |point: &Vec3| !presence.iter().any(|&ball| contains(ball, *point));

@@ -5,6 +5,7 @@
 //! visits the voxels near the camera again and again.
 
 use super::config::FreeSpaceConfig;
+use super::evidence::PointId;
 use crate::vector::{Vec3, cross, dot, max, min, norm, norm_squared, orthogonal, sub};
 
 /// Stereographic projection around a direction: the whole sphere but its opposite.
@@ -44,6 +45,7 @@ impl Projection {
 pub(super) struct Facet {
     corners: [Vec3; 3],
     image: [[f64; 2]; 3],
+    points: [PointId; 3],
     /// The plane through the corners, towards the keyframe's far side: what is before it has been seen through.
     normal: Vec3,
     offset: f64,
@@ -51,7 +53,11 @@ pub(super) struct Facet {
 
 impl Facet {
     /// `None` where the triangle has no area or is seen from the side.
-    pub(super) fn new(corners: [Vec3; 3], image: [[f64; 2]; 3]) -> Option<Self> {
+    pub(super) fn new(
+        corners: [Vec3; 3],
+        image: [[f64; 2]; 3],
+        points: [PointId; 3],
+    ) -> Option<Self> {
         let [a, b, c] = corners;
         let across = cross(sub(b, a), sub(c, a));
         let normal = if dot(across, a) < 0.0 {
@@ -63,6 +69,7 @@ impl Facet {
         (offset > 1e-12 * norm(normal) * norm(a)).then_some(Facet {
             corners,
             image,
+            points,
             normal,
             offset,
         })
@@ -170,24 +177,24 @@ impl Panorama {
         (place(low), place(high))
     }
 
-    /// Does this place lie before one of the triangles, as seen from the keyframe?
+    /// The corners of the triangle before which this place lies, as seen from the keyframe.
     #[inline]
-    pub(super) fn sees_through(&self, place: Vec3) -> bool {
+    pub(super) fn seen_through(&self, place: Vec3) -> Option<[PointId; 3]> {
         let direction = sub(place, self.origin);
         let length = norm(direction);
-        let Some(image) = self.projection.of(direction, length) else {
-            return false;
-        };
+        let image = self.projection.of(direction, length)?;
         let [x, y] = [0, 1].map(|axis| (image[axis] - self.low[axis]) * self.pixels_per_unit);
         if !(x >= 0.0 && y >= 0.0) {
-            return false;
+            return None;
         }
         let (x, y) = (x as usize, y as usize);
         if x >= self.size[0] || y >= self.size[1] {
-            return false;
+            return None;
         }
-        let facet = self.facets.get(self.pixels[y * self.size[0] + x] as usize);
-        facet.is_some_and(|facet| dot(facet.normal, direction) <= facet.offset)
+        let facet = self
+            .facets
+            .get(self.pixels[y * self.size[0] + x] as usize)?;
+        (dot(facet.normal, direction) <= facet.offset).then_some(facet.points)
     }
 }
 
