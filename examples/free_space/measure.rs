@@ -46,13 +46,12 @@ pub(crate) fn settings(arguments: &Arguments) -> Vec<Setting> {
     };
     let export = FreeSpaceConfig {
         clearance: 0.22,
-        max_depth_ratio: 1.5,
         ..default.clone()
     };
     let mut settings = Vec::new();
     for (name, base) in [("default", default), ("export", export)] {
         for drops_contradicted in [false, true] {
-            for max_triangle_angle in [0.0, 0.1, 0.21] {
+            for max_triangle_angle in [0.0, 0.1, 0.25] {
                 let config = FreeSpaceConfig {
                     max_triangle_angle,
                     ..base.clone()

@@ -50,7 +50,7 @@ impl<'a> Carver<'a> {
         let end = lerp(ray.origin, ray.end, carved / length);
         let number = *self.rays;
         self.follow(ray.origin, end, |voxel| {
-            voxel.cross(keyframe, point, number)
+            voxel.cross(keyframe, point, number);
         });
         let widening = self.config.patch_half_angle.tan();
         if carved * widening > 0.5 * self.grid.resolution {

@@ -33,10 +33,8 @@ const OUTERMOST: f64 = 0.01;
 const EXPORT_CLEARANCE_M: f64 = 0.22;
 /// Edge of a voxel where free space is exported and measured, metres.
 const EXPORT_VOXEL_M: f64 = 0.08;
-/// Widest gap between two rays that is exported as seen through, rad: 12 degrees.
-const EXPORT_GAP: f64 = 0.21;
-/// Largest ratio of the depths of two such rays' points.
-const EXPORT_DEPTH_RATIO: f64 = 1.5;
+/// Widest gap between two rays that is exported as seen through, rad: 14 degrees.
+const EXPORT_GAP: f64 = 0.25;
 
 /// Everything that stands in the way, and what was seen through.
 #[derive(Debug)]
@@ -99,7 +97,6 @@ pub(crate) fn measured_surroundings(
         resolution: EXPORT_VOXEL_M,
         clearance: EXPORT_CLEARANCE_M,
         max_triangle_angle: EXPORT_GAP,
-        max_depth_ratio: EXPORT_DEPTH_RATIO,
         ..FreeSpaceConfig::default()
     };
     let config = config.scaled(units_per_meter);
