@@ -234,46 +234,6 @@ fn the_space_between_near_rays_of_a_keyframe_is_carved() {
     assert_eq!(state(&rays[..2], 0.3), VoxelState::Unknown);
 }
 
-/// Two keyframes that see different triangles of points at x = 4, but for one corner that both of them may share.
-fn two_triangles(first_corner: Vec3, second_corner: Vec3) -> Vec<Ray> {
-    let ends = |corner, aside: f64| [[4.0, 0.4, 0.5 - aside], [4.0, 0.4, -0.5 + aside], corner];
-    let keyframe = |origin: Vec3, ends: [Vec3; 3]| ends.map(|end| Ray { origin, end });
-    let first = keyframe([0.0, 0.05, 0.05], ends(first_corner, 0.0));
-    let second = keyframe([0.0, 0.1, 0.05], ends(second_corner, 0.1));
-    [first, second].concat()
-}
-
-#[test]
-fn one_point_opens_no_window_between_rays() {
-    let config = FreeSpaceConfig {
-        min_keyframes: 2,
-        max_triangle_angle: 0.4,
-        ..config()
-    };
-    // Before a blank wall at x = 3, say: no ray crosses it here.
-    let behind_the_wall = [3.25, 0.05, 0.05];
-    let state = |rays: Vec<Ray>| {
-        let space = FreeSpace::from_rays(rays, &NOTHING, &config).unwrap();
-        space.state(behind_the_wall)
-    };
-    let wrong = [4.0, -0.6, 0.05];
-    let others = two_triangles(wrong, [4.0, -0.65, 0.05]);
-    assert_eq!(state(others), VoxelState::Free, "the points differ");
-    let shared = two_triangles(wrong, wrong);
-    assert_eq!(
-        state(shared.clone()),
-        VoxelState::Unknown,
-        "all hang on one"
-    );
-    // A ray of each keyframe is proof by itself.
-    let keyframes = [shared[0].origin, shared[3].origin];
-    let rays = keyframes.map(|origin| Ray {
-        origin,
-        end: [4.0, 0.05, 0.05],
-    });
-    assert_eq!(state([&shared[..], &rays].concat()), VoxelState::Free);
-}
-
 #[test]
 fn presence_is_proof() {
     let mut space =
