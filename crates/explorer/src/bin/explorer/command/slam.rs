@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &Slam, output: &Output) -> Result<(), Failure> {
     progress.step("writing the map and the pictures");
     let found = Found::new(&result, &depths)?;
     let mut files = found.write(folder)?;
-    files.extend(pictures(folder, &sequence, result.frames, &mut depths)?);
+    files.extend(found.pictures(folder, &sequence, result.frames, &mut depths)?);
     drop(progress);
     let report = found.report(&result, &depths, files);
     deliver(output, &report, &text(&report, folder), || {
@@ -161,6 +161,25 @@ impl Found {
         Ok(files.into_iter().map(str::to_owned).collect())
     }
 
+    /// The middle frame, with its depth where that can be relied on.
+    fn pictures(
+        &self,
+        folder: &Path,
+        sequence: &ImageSequence,
+        frames: usize,
+        depths: &mut Depths,
+    ) -> Result<Vec<String>, Failure> {
+        let Some(loaded) = sequence.load(frames / 2).map_err(tracking::unreadable)? else {
+            return Ok(Vec::new());
+        };
+        let depth = match depths.is_used(self.fit.as_ref()) {
+            true => depths.depth(&loaded.frame())?,
+            false => None,
+        };
+        let names = tracking::draw_frame(folder, &loaded.image.view(), depth.as_ref())?;
+        Ok(names.into_iter().map(str::to_owned).collect())
+    }
+
     fn report(&self, result: &Tracking, depths: &Depths, files: Vec<String>) -> SlamReport {
         let all = |count: fn(&Epoch) -> usize| result.epochs.iter().map(count).sum();
         let at = |share| percentile(result.milliseconds.clone(), share).unwrap_or(0.0);
@@ -221,21 +240,6 @@ impl Found {
             ..self.map_figure()
         }
     }
-}
-
-/// The middle frame, with whatever depth there is for it.
-fn pictures(
-    folder: &Path,
-    sequence: &ImageSequence,
-    frames: usize,
-    depths: &mut Depths,
-) -> Result<Vec<String>, Failure> {
-    let Some(loaded) = sequence.load(frames / 2).map_err(tracking::unreadable)? else {
-        return Ok(Vec::new());
-    };
-    let depth = depths.depth(&loaded.frame())?;
-    let names = tracking::draw_frame(folder, &loaded.image.view(), depth.as_ref())?;
-    Ok(names.into_iter().map(str::to_owned).collect())
 }
 
 fn headline(report: &SlamReport) -> String {

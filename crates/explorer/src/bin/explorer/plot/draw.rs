@@ -4,6 +4,7 @@ use core::fmt;
 use core::ops::Range;
 
 use plotters::coord::{Shift, types::RangedCoordf64};
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use super::figure::{Figure, Layer, Shape};
@@ -138,6 +139,10 @@ fn sample<'a>(
     match &layer.shape {
         Shape::Dots { .. } => Circle::new((x + 10, y), 4, color.filled()).into_dyn(),
         Shape::Crosses { .. } => Cross::new((x + 10, y), 4, color.stroke_width(2)).into_dyn(),
+        Shape::Line { dashed: true, .. } => {
+            let ends = [(x + 1, y), (x + 19, y)];
+            DashedPathElement::new(ends, 7, 4, color.stroke_width(3)).into_dyn()
+        }
         Shape::Segments { .. } | Shape::Line { .. } => {
             PathElement::new([(x + 1, y), (x + 19, y)], color.stroke_width(3)).into_dyn()
         }
@@ -192,6 +197,25 @@ fn put_layers(svg: &str, layers: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_dashed_line_has_a_dashed_mark() {
+        let marks = |dashed| {
+            let line = Shape::Line {
+                through: vec![[0.0, 0.0], [1.0, 1.0]],
+                width: 2.0,
+                dashed,
+            };
+            let figure = Figure {
+                layers: vec![Layer::new("path", (1, 2, 3), line)],
+                ..Figure::default()
+            };
+            let svg = figure.to_svg().expect("a picture");
+            svg.matches("stroke=\"#010203\" stroke-width=\"3\"").count()
+        };
+        // Strokes of the mark, and the line itself.
+        assert_eq!((marks(false), marks(true)), (1, 2));
+    }
 
     #[test]
     fn ticks_have_the_decimals_of_their_steps_and_zero_no_sign() {

@@ -14,5 +14,6 @@ pub(crate) mod trajectory;
 
 pub(crate) use axes::TopView;
 pub(crate) use figure::{Color, Figure, Layer, Shape, color};
+pub(crate) use png::pixmap;
 pub(crate) use save::save;
 pub(crate) use trajectory::{AxisPair, Track};

@@ -54,6 +54,11 @@ impl Depths {
         self.source.is_metric()
     }
 
+    /// Whether anything that is written may rest on its depths: a network must have passed its test.
+    pub(crate) fn is_used(&self, fit: Option<&DepthFit>) -> bool {
+        self.is_metric() || self.report(fit).meters_per_unit.is_some()
+    }
+
     pub(crate) fn depth(&mut self, frame: &Frame<'_>) -> Result<Option<DepthImage>, Failure> {
         let advice = "use another network, or --depth none";
         self.source

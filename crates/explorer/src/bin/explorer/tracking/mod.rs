@@ -2,6 +2,7 @@
 //! poses through the filter where the flight's telemetry was recorded.
 
 mod depth;
+mod depth_picture;
 mod epoch;
 mod flight;
 mod fusing;

@@ -1,4 +1,4 @@
-//! Pictures of one frame: features, edges, L-junctions and depth, each as a PNG over the grey image.
+//! Pictures of one frame: features, edges and L-junctions, each as a PNG over the grey image, and its depth.
 
 use std::fs;
 use std::path::Path;
@@ -12,10 +12,11 @@ use edge_slam::image::GrayView;
 use edge_slam::odometry::OdometryConfig;
 use resvg::tiny_skia::{Color, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
+use super::depth_picture::depth_picture;
 use crate::failure::Failure;
 
 /// Picture pixels for one of the image.
-const ZOOM: f32 = 2.0;
+pub(super) const ZOOM: f32 = 2.0;
 /// Shortest chain that is drawn, pixels.
 const SHORTEST_CHAIN: usize = 20;
 
@@ -114,27 +115,6 @@ fn junctions_over(image: &GrayView<'_>, junctions: &[LJunction]) -> Result<Pixma
     Ok(picture)
 }
 
-/// Near red to far blue between the 2nd and 98th percentile; unknown black.
-fn depth_picture(depth: &DepthImage) -> Result<Pixmap, Failure> {
-    let (width, height) = (depth.width(), depth.height());
-    let mut known: Vec<f64> = (0..width * height)
-        .filter_map(|index| depth.get(index % width, index / width))
-        .collect();
-    known.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        known
-            .get((share * (known.len().max(1) - 1) as f64) as usize)
-            .copied()
-    };
-    let (near, far) = (at(0.02).unwrap_or(0.0), at(0.98).unwrap_or(1.0));
-    paint(width, height, |x, y| {
-        let z = depth.get(x, y)?;
-        let share = ((z - near) / (far - near).max(1e-9)).clamp(0.0, 1.0) as f32;
-        let color = hue(0.66 * share).to_color_u8();
-        Some([color.red(), color.green(), color.blue()])
-    })
-}
-
 /// The image, darkened by a factor so that what is drawn over it stands out.
 fn ground(image: &GrayView<'_>, brightness: f32) -> Result<Pixmap, Failure> {
     paint(image.width(), image.height(), |x, y| {
@@ -142,7 +122,8 @@ fn ground(image: &GrayView<'_>, brightness: f32) -> Result<Pixmap, Failure> {
     })
 }
 
-fn paint(
+/// A picture of so many image pixels; black where there is no colour.
+pub(super) fn paint(
     width: usize,
     height: usize,
     color: impl Fn(usize, usize) -> Option<[u8; 3]>,
@@ -174,7 +155,7 @@ fn stroke(picture: &mut Pixmap, path: PathBuilder, color: Color, width: f32) {
 }
 
 /// A full colour of the circle; whole numbers are red.
-fn hue(turn: f32) -> Color {
+pub(super) fn hue(turn: f32) -> Color {
     let channel = |shift: f32| {
         let distance = ((turn + shift).rem_euclid(1.0) * 6.0 - 3.0).abs() - 1.0;
         distance.clamp(0.0, 1.0)
