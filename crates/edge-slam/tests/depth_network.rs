@@ -5,6 +5,7 @@
 mod shared;
 
 use edge_slam::depth::OnnxDepth;
+use proptest::prelude::*;
 use shared::shared;
 
 #[test]
@@ -38,4 +39,57 @@ fn the_check_vector_is_met() {
     let mean = depth.iter().sum::<f32>() / depth.len() as f32;
     assert!((mean - 1.21847).abs() < 1e-3, "{mean}");
     assert!(network.predict(vec![0.0; 5]).is_err());
+}
+
+/// A field of a protocol buffer that has a length.
+fn field(number: u8, body: &[u8]) -> Vec<u8> {
+    let length = u8::try_from(body.len()).unwrap();
+    [&[number << 3 | 2, length], body].concat()
+}
+
+#[test]
+fn a_network_of_unknown_operators_is_refused() {
+    // model.graph = 7, graph.node = 1, node.op_type = 4.
+    let node = field(1, &field(4, b"NoSuchOperator"));
+    let model = [&[8, 8][..], &field(7, &node)].concat();
+    assert!(OnnxDepth::new(&model).is_err());
+}
+
+#[test]
+fn a_network_file_that_breaks_off_or_was_damaged_is_refused_or_loaded() {
+    let Some(path) = shared(&["models", "fastdepth_nyu.onnx"]) else {
+        return;
+    };
+    let whole = std::fs::read(path).unwrap();
+    for length in [1, 2, 7, 100, 10_000, whole.len() / 2, whole.len() - 1] {
+        assert!(OnnxDepth::new(&whole[..length]).is_err(), "{length}");
+    }
+    // Where the structure is: at both ends of the file.
+    for at in (0..100).chain(whole.len() - 60..whole.len()).step_by(9) {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x55;
+        let _ = OnnxDepth::new(&damaged);
+    }
+}
+
+proptest! {
+    #[test]
+    fn foreign_bytes_are_no_network(bytes in prop::collection::vec(any::<u8>(), 1..200)) {
+        // A protocol buffer without a graph may come out by chance; it has nothing to run.
+        if let Ok(network) = OnnxDepth::new(&bytes) {
+            prop_assert!(network.predict(vec![0.0; 3 * 224 * 224]).is_err());
+        }
+    }
+
+    #[test]
+    fn damaged_graphs_do_not_panic(
+        name in "[A-Za-z]{0,12}", at in 0usize..40, value in any::<u8>(), cut in 0usize..60,
+    ) {
+        let node = field(1, &[field(1, b"x"), field(2, b"y"), field(4, name.as_bytes())].concat());
+        let mut model = [&[8, 8][..], &field(7, &node)].concat();
+        let at = at % model.len();
+        model[at] = value;
+        model.truncate(cut);
+        let _ = OnnxDepth::new(&model);
+    }
 }

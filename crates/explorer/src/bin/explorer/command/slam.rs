@@ -172,10 +172,7 @@ impl Found {
         let Some(loaded) = sequence.load(frames / 2).map_err(tracking::unreadable)? else {
             return Ok(Vec::new());
         };
-        let depth = match depths.is_used(self.fit.as_ref()) {
-            true => depths.depth(&loaded.frame())?,
-            false => None,
-        };
+        let depth = depths.depth_if_used(&loaded.frame(), self.fit.as_ref())?;
         let names = tracking::draw_frame(folder, &loaded.image.view(), depth.as_ref())?;
         Ok(names.into_iter().map(str::to_owned).collect())
     }

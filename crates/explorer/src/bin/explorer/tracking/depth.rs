@@ -55,8 +55,20 @@ impl Depths {
     }
 
     /// Whether anything that is written may rest on its depths: a network must have passed its test.
-    pub(crate) fn is_used(&self, fit: Option<&DepthFit>) -> bool {
+    fn is_used(&self, fit: Option<&DepthFit>) -> bool {
         self.is_metric() || self.report(fit).meters_per_unit.is_some()
+    }
+
+    /// The frame's depth where it can be relied on.
+    pub(crate) fn depth_if_used(
+        &mut self,
+        frame: &Frame<'_>,
+        fit: Option<&DepthFit>,
+    ) -> Result<Option<DepthImage>, Failure> {
+        match self.is_used(fit) {
+            true => self.depth(frame),
+            false => Ok(None),
+        }
     }
 
     pub(crate) fn depth(&mut self, frame: &Frame<'_>) -> Result<Option<DepthImage>, Failure> {
@@ -97,4 +109,47 @@ fn network(_: &std::path::Path) -> Result<Box<dyn DepthSource>, Failure> {
         "--depth model: this program was built without depth networks",
         "build it with `cargo build --release -p explorer --features depth-onnx`",
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracking::draw_frame;
+    use edge_slam::depth::ConstantDepth;
+    use edge_slam::image::GrayImage;
+
+    #[test]
+    fn depth_that_failed_its_test_is_not_drawn() {
+        let folder = std::env::temp_dir().join(format!("explorer depth {}", std::process::id()));
+        let image = GrayImage::filled(64, 48, 90);
+        let frame = Frame {
+            time: 0.0,
+            image: image.view(),
+            depth: None,
+        };
+        let fit = |correlation| DepthFit {
+            scale: 1.0,
+            correlation,
+            spread: 0.1,
+            pairs: 100,
+        };
+        // Like a network, it gives every frame a depth that is not metres.
+        let mut depths = Depths {
+            source: Box::new(ConstantDepth { distance: 2.0 }),
+            name: "model",
+        };
+        for (fit, drawn) in [
+            (None, false),
+            (Some(fit(LEAST_CORRELATION - 0.01)), false),
+            (Some(fit(LEAST_CORRELATION)), true),
+        ] {
+            let _ = std::fs::remove_dir_all(&folder);
+            std::fs::create_dir_all(&folder).expect("a folder");
+            let depth = depths.depth_if_used(&frame, fit.as_ref()).expect("depth");
+            let names = draw_frame(&folder, &image.view(), depth.as_ref()).expect("pictures");
+            assert_eq!(names.contains(&"depth.png"), drawn, "{fit:?}");
+            assert_eq!(folder.join("depth.png").exists(), drawn, "{fit:?}");
+        }
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
 }
