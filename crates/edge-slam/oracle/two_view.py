@@ -10,7 +10,8 @@ The recorded poses are only good to some centimetres. So every figure is also gi
 recorded ones and are aligned by the depth images alone (`depth_pose.py`), which know nothing of the colour images; and
 the fitted cameras are those that these poses ask for. Brackets are 95 % intervals of the median (bootstrap).
 fr1_rpy: the gates were chosen on pairs that are 3, 6 and 10 frames apart, and on kitchen pairs that begin at frames where
-none of the 200 does; other distances, from other frames, are held out.
+none of the 200 does. The other pairs (other distances, from other frames) were held out for all gates but `residual_per_turn`, which
+was fixed after its effect on them had been seen.
 """
 import subprocess
 import sys
@@ -248,8 +249,8 @@ def main():
     kitchen(binary, Path(sys.argv[2]))
     frames, intrinsics, lens = tum(Path(sys.argv[3]))
     chosen = [(i, i + gap) for gap in (3, 6, 10) for i in range(0, len(frames) - gap, 4)]
-    held_out = [(i, i + gap) for gap in (1, 2, 4, 5, 7, 8, 9, 12, 15, 20) for i in range(2, len(frames) - gap, 6)]
-    for name, pairs in (("fr1_rpy", chosen), ("fr1_rpy held out", held_out)):
+    others = [(i, i + gap) for gap in (1, 2, 4, 5, 7, 8, 9, 12, 15, 20) for i in range(2, len(frames) - gap, 6)]
+    for name, pairs in (("fr1_rpy", chosen), ("fr1_rpy, other pairs", others)):
         for mode in ("raw", "aligned"):
             report(f"{name}, {mode} matches", list(run(binary, mode, frames, intrinsics, lens, pairs)))
 
