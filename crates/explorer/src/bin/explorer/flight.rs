@@ -46,8 +46,8 @@ pub(crate) fn fly(
     seed: u64,
     progress: &Progress,
 ) -> Result<(SimulatedFlight, RunReport), Failure> {
-    let known = "use apartment, one-door-room, two-rooms, closed-room or generated:SEED";
-    let place = World::named(world, seed).map_err(|error| Failure::new(error, known))?;
+    let advice = "`explorer simulate --help` says more";
+    let place = World::named(world, seed).map_err(|error| Failure::new(error, advice))?;
     let (sim, mission) = (SimConfig::default(), MissionConfig::default());
     let mut flight = SimulatedFlight::new(place, sim, mission, seed).map_err(Failure::internal)?;
     let mut times = StageTimes::default();
