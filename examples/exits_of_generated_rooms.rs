@@ -1,4 +1,5 @@
 //! Exits of generated rooms after the project's own outlier removal: precision, recall and silence at three outlier rates.
+//! Of a bare map, of which all that is known is the agent's position, and of one that tells which keyframe observes which point.
 //!
 //! `cargo run --release -p examples --example exits_of_generated_rooms [-- FIRST_SEED [ROOMS]]`
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
@@ -11,7 +12,7 @@ mod scoring;
 use exit_finder::ExitConfig;
 use generator::{Kind, Scan};
 use scoring::{Suite, evaluate};
-use submodular_minimax::{OutlierConfig, Views, remove_outliers};
+use submodular_minimax::{Cues, OutlierConfig, Views, remove_outliers};
 
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -19,25 +20,48 @@ type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cleaning {
     name: &'static str,
-    /// Distances are divided by this power of the range, the agent's place being the viewpoint; `None`: not cleaned.
-    exponent: Option<f64>,
+    knowing: Knowing,
     /// Whether the search is told what was taken out.
     told: bool,
 }
 
+/// What a cleaning goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Knowing {
+    /// There is none.
+    NotCleaned,
+    /// The agent's place is the viewpoint; distances are divided by this power of the range.
+    Position(f64),
+    /// The observations, with the default weights of triangulated points.
+    Observations,
+    /// The observations, with the weights of a bare map and this power of the range.
+    Milder(f64),
+}
+
+use Knowing::{Milder, NotCleaned, Observations, Position};
+
 /// By default, and with a higher power: far points behind doors are sparser than near ones.
-const CLEANINGS: [Cleaning; 5] = [
-    cleaning("none", None, false),
-    cleaning("from position", Some(0.8), false),
-    cleaning("the same, told", Some(0.8), true),
-    cleaning("for exits", Some(1.4), false),
-    cleaning("the same, told", Some(1.4), true),
+const OF_BARE_MAPS: [Cleaning; 5] = [
+    cleaning("none", NotCleaned, false),
+    cleaning("from position", Position(0.8), false),
+    cleaning("the same, told", Position(0.8), true),
+    cleaning("for exits", Position(1.4), false),
+    cleaning("the same, told", Position(1.4), true),
+];
+const OF_OBSERVED: [Cleaning; 7] = [
+    cleaning("none", NotCleaned, false),
+    cleaning("observations", Observations, false),
+    cleaning("the same, told", Observations, true),
+    cleaning("milder", Milder(0.8), false),
+    cleaning("the same, told", Milder(0.8), true),
+    cleaning("for exits", Milder(1.4), false),
+    cleaning("the same, told", Milder(1.4), true),
 ];
 
-const fn cleaning(name: &'static str, exponent: Option<f64>, told: bool) -> Cleaning {
+const fn cleaning(name: &'static str, knowing: Knowing, told: bool) -> Cleaning {
     Cleaning {
         name,
-        exponent,
+        knowing,
         told,
     }
 }
@@ -47,6 +71,7 @@ const fn cleaning(name: &'static str, exponent: Option<f64>, told: bool) -> Clea
 struct Task {
     kind: Kind,
     outliers: f64,
+    observed: bool,
     cleanings: &'static [Cleaning],
 }
 
@@ -57,22 +82,27 @@ fn main() -> Outcome<()> {
     };
     let (first_seed, rooms) = (argument(1, 1)?, argument(2, 200)?);
     println!(
-        "percent                         |  scale known          |  scale unknown        | found of   |        | found of | sectors | closed rooms"
+        "percent                                  |  scale known          |  scale unknown        | found of   |        | found of | sectors | closed rooms"
     );
     println!(
-        "rooms   outliers  cleaning      |  P      R      best   |  P      R      best   | 20 1 m off | oracle | oracle's | agree   | silent"
+        "rooms   map      outliers  cleaning      |  P      R      best   |  P      R      best   | 20 1 m off | oracle | oracle's | agree   | silent"
     );
-    for (kind, cleanings) in [
-        (Kind::Plain, &CLEANINGS[..]),
-        (Kind::Curved, &CLEANINGS[4..]),
-        (Kind::Counter, &CLEANINGS[4..]),
-        (Kind::Tall, &CLEANINGS[4..]),
+    for (kind, observed, cleanings) in [
+        (Kind::Plain, false, &OF_BARE_MAPS[..]),
+        (Kind::Curved, false, &OF_BARE_MAPS[4..]),
+        (Kind::Counter, false, &OF_BARE_MAPS[4..]),
+        (Kind::Tall, false, &OF_BARE_MAPS[4..]),
+        (Kind::Plain, true, &OF_OBSERVED[..]),
+        (Kind::Curved, true, &OF_OBSERVED[6..]),
+        (Kind::Counter, true, &OF_OBSERVED[6..]),
+        (Kind::Tall, true, &OF_OBSERVED[6..]),
     ] {
         let tables = std::thread::scope(|scope| {
             let table = |outliers| {
                 let task = Task {
                     kind,
                     outliers,
+                    observed,
                     cleanings,
                 };
                 scope.spawn(move || task.table(first_seed, rooms))
@@ -98,6 +128,7 @@ impl Task {
             first_seed,
             outliers: self.outliers,
             clean: false,
+            observed: self.observed,
         };
         let mut table = String::new();
         for cleaning in self.cleanings {
@@ -114,8 +145,9 @@ impl Task {
         let config = ExitConfig::default();
         let [known, unknown] = [true, false].map(|known| evaluate(open, known, &config));
         format!(
-            "{:8} {:3.0} {:16} {} {} {:6.1} {:6.1} {:6.1} {:6.1} {:6.1}\n",
+            "{:8} {:8} {:3.0} {:16} {} {} {:6.1} {:6.1} {:6.1} {:6.1} {:6.1}\n",
             format!("{:?}", self.kind),
+            if self.observed { "observed" } else { "bare" },
             100.0 * self.outliers,
             cleaning.name,
             row(&known),
@@ -135,13 +167,21 @@ fn row(score: &scoring::Score) -> String {
 }
 
 fn cleaned(mut scans: Vec<Scan>, cleaning: Cleaning) -> Outcome<Vec<Scan>> {
-    let Some(exponent) = cleaning.exponent else {
-        return Ok(scans);
-    };
     let mut config = OutlierConfig::default();
-    config.rays.one_position.range_exponent = exponent;
+    match cleaning.knowing {
+        NotCleaned => return Ok(scans),
+        Position(exponent) => config.rays.one_position.range_exponent = exponent,
+        Observations => {}
+        Milder(exponent) => {
+            config.rays.triangulated = Cues::one_position();
+            config.rays.triangulated.range_exponent = exponent;
+        }
+    }
     for scan in &mut scans {
-        let views = Views::from_position(scan.agent, scan.points.len())?;
+        let views = match cleaning.knowing {
+            Position(_) => Views::from_position(scan.agent, scan.points.len())?,
+            _ => Views::new(scan.viewpoints(), scan.observers.clone())?,
+        };
         let kept = remove_outliers(&scan.points, Some(&views), &config)?.kept;
         if cleaning.told {
             scan.keep_and_doubt(&kept);

@@ -26,6 +26,7 @@ fn main() {
             first_seed: 1,
             outliers,
             clean,
+            observed: false,
         };
         let [closed, dark] = [
             Suite {

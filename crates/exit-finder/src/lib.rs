@@ -29,4 +29,4 @@ pub use points::PointLike;
 pub use profile::{BinStats, LiveProfile, PointCounts, RangeProfile, Strip};
 pub use rule::{CUE_NAMES, CUES, Opening, ScoreParts, candidates_of_profile, exits_of_profile};
 pub use sector::Sector;
-pub use view::{ExitView, Gaze};
+pub use view::{ExitView, Gaze, Ray};

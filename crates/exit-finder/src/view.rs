@@ -19,6 +19,18 @@ pub struct ExitView<'a> {
     /// What a cleaning took out of the map. These points are looked at too, so that no far point behind a door is lost,
     /// but what is seen mostly by them is believed less; see [`crate::RangeProfile::of_cleaned`].
     pub doubtful: &'a [[f64; 3]],
+    /// Which keyframe saw which point, kept or doubtful. Rays to one point follow one another. Where there are
+    /// no gazes, they tell what was looked at. Empty: not known.
+    pub rays: &'a [Ray],
+}
+
+/// A line of sight: a keyframe observed a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Camera centre of the keyframe, world.
+    pub origin: [f64; 3],
+    /// The point, world.
+    pub end: [f64; 3],
 }
 
 /// One look of the camera, for example of a keyframe.

@@ -17,6 +17,7 @@ fn suite() -> Suite {
         first_seed: 1,
         outliers: 0.0,
         clean: false,
+        observed: false,
     }
 }
 

@@ -12,7 +12,7 @@ use exit_finder::sites::{
 };
 use exit_finder::{
     AffinePlane, ExitConfig, ExitReport, ExitView, Gaze, HeightBand, LiveProfile, RangeProfile,
-    exits_of_profile, find_exits,
+    Ray, exits_of_profile, find_exits,
 };
 use proptest::prelude::*;
 use walls::room;
@@ -94,14 +94,15 @@ proptest! {
     #[test]
     fn views_and_closed_doors_of_any_size_are_survived(
         broken in cloud(40), closed in cloud(20), gazes in prop::collection::vec((place(), place(), wild()), 0..6),
-        heading in place(), heights in prop::array::uniform2(wild()),
+        rays in prop::collection::vec((place(), place()), 0..40), heading in place(), heights in prop::array::uniform2(wild()),
     ) {
         let points = spoilt_room(&broken);
         let gazes: Vec<Gaze> = gazes
             .into_iter()
             .map(|(position, forward, half_fov_rad)| Gaze { position, forward, half_fov_rad })
             .collect();
-        let view = ExitView { heading: Some(heading), gazes: &gazes, virtual_points: &closed, doubtful: &closed };
+        let rays: Vec<Ray> = rays.into_iter().map(|(origin, end)| Ray { origin, end }).collect();
+        let view = ExitView { heading: Some(heading), gazes: &gazes, virtual_points: &closed, doubtful: &closed, rays: &rays };
         let Some(found) = report(&points, &view) else { return Ok(()) };
         for exit in &found.exits {
             prop_assert!(exit.position.iter().chain(exit.jambs.iter().flatten()).all(|part| part.is_finite()));

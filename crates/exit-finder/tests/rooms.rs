@@ -10,7 +10,7 @@ mod walls;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use exit_finder::{
-    AffinePlane, ExitConfig, ExitKind, ExitReport, ExitView, Gaze, HeightBand, Rejection,
+    AffinePlane, ExitConfig, ExitKind, ExitReport, ExitView, Gaze, HeightBand, Ray, Rejection,
     find_exits,
 };
 use walls::{Walls, room};
@@ -260,6 +260,44 @@ fn gazes_tell_unseen_from_empty() {
     };
     let report = find_exits(&points, agent, &plane, &view, &config).unwrap();
     assert_eq!((report.exits.len(), report.unseen.len()), (1, 0));
+}
+
+#[test]
+fn rays_tell_unseen_from_empty_where_there_are_no_gazes() {
+    let points = square(1).seen_from([0.0; 2], 1080, 20.0);
+    let agent = [0.0, 0.0, 1.0];
+    let plane = AffinePlane::from_up(UP, agent).unwrap();
+    // Twelve keyframes about the agent, each of which sees 70 degrees; the door is at −90 degrees.
+    let keyframe = |k: usize| TAU * k as f64 / 12.0;
+    let rays = |keyframes: &[usize]| -> Vec<Ray> {
+        let sees = |k: usize, end: [f64; 3]| {
+            let off = end[1].atan2(end[0]) - keyframe(k) + 0.5 * TAU;
+            (off.rem_euclid(TAU) - 0.5 * TAU).abs() < 35f64.to_radians()
+        };
+        let of_point = |&end: &[f64; 3]| {
+            let seeing = keyframes.iter().filter(move |&&k| sees(k, end));
+            seeing.map(move |&k| Ray {
+                origin: [0.01 * k as f64, 0.0, 1.0],
+                end,
+            })
+        };
+        points.iter().flat_map(of_point).collect()
+    };
+    let report = |rays: &[Ray]| {
+        let view = ExitView {
+            rays,
+            ..Default::default()
+        };
+        find_exits(&points, agent, &plane, &view, &ExitConfig::default()).unwrap()
+    };
+    // The keyframe in the middle looked across the door, the others to its sides end within it.
+    let all: Vec<usize> = (0..12).collect();
+    let seen = report(&rays(&all));
+    assert_eq!((seen.exits.len(), seen.unseen.len()), (1, 0));
+    let away: Vec<usize> = (0..12).filter(|k| !(8..=10).contains(k)).collect();
+    let unseen = report(&rays(&away));
+    assert!(unseen.exits.is_empty() && unseen.unseen.len() == 1);
+    assert!(unseen.unseen[0].contains(1.5 * std::f64::consts::PI));
 }
 
 #[test]

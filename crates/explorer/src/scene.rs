@@ -232,7 +232,7 @@ impl Scene {
             heading: Some(pose.forward.into()),
             gazes: &gazes,
             virtual_points: closed,
-            doubtful: &[],
+            ..ExitView::default()
         };
         let need = 2.0 * config.planning_radius_m();
         let exits = ExitConfig {

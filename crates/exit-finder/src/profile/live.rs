@@ -37,11 +37,10 @@ pub struct LiveProfile {
     agent: [f64; 3],
     config: ExitConfig,
     band: Band,
-    /// Bit patterns of the ranges, ascending per bin: those in the band, at flying height, and at any height.
+    /// Bit patterns of the ranges, ascending per bin: those of each layer, in the band, and at any height.
+    layers: [Vec<Vec<u64>>; 4],
     seen: Vec<Vec<u64>>,
-    level: Vec<Vec<u64>>,
     any_height: Vec<Vec<u64>>,
-    above: Vec<Vec<u64>>,
     stats: Vec<BinStats>,
     median: RunningMedian,
     counts: PointCounts,
@@ -76,10 +75,9 @@ impl LiveProfile {
             agent,
             config: *config,
             band,
+            layers: std::array::from_fn(|_| vec![Vec::new(); config.bins]),
             seen: vec![Vec::new(); config.bins],
-            level: vec![Vec::new(); config.bins],
             any_height: vec![Vec::new(); config.bins],
-            above: vec![Vec::new(); config.bins],
             stats: vec![BinStats::EMPTY; config.bins],
             median: RunningMedian::default(),
             counts: PointCounts::default(),
@@ -99,10 +97,10 @@ impl LiveProfile {
             live.count(place, true);
         }
         for bin in 0..config.bins {
-            live.seen[bin].sort_unstable();
-            live.level[bin].sort_unstable();
-            live.any_height[bin].sort_unstable();
-            live.above[bin].sort_unstable();
+            let layers = live.layers.iter_mut().map(|lists| &mut lists[bin]);
+            for list in layers.chain([&mut live.seen[bin], &mut live.any_height[bin]]) {
+                list.sort_unstable();
+            }
             live.refresh(bin);
         }
         Ok(live)
@@ -124,12 +122,17 @@ impl LiveProfile {
         }
     }
 
-    /// Takes out a point that was inserted with exactly these coordinates; false when there is none.
+    /// Takes out a point that was inserted with exactly these coordinates; false when there is none, and then nothing has
+    /// changed.
     pub fn remove(&mut self, point: [f64; 3]) -> bool {
         let place = self.place(point);
+        if !matches!(place, Place::Bin { .. }) && *self.counter(place) == 0 {
+            return false;
+        }
         if let Place::Bin { bin, layer, range } = place {
-            let held = |list: &mut Vec<u64>| list.binary_search(&range.to_bits()).is_ok();
-            if !self.lists(bin, layer).all(held) {
+            // The list of its own layer tells: a point at another height may share bin and range.
+            let own = &self.layers[layer as usize][bin];
+            if own.binary_search(&range.to_bits()).is_err() {
                 return false;
             }
             for list in self.lists(bin, layer) {
@@ -169,9 +172,9 @@ impl LiveProfile {
             agent: self.agent,
             bins: self.stats.clone(),
             seen: samples(&self.seen),
-            level: samples(&self.level),
+            level: samples(&self.layers[Layer::Level as usize]),
             any_height: samples(&self.any_height),
-            above: samples(&self.above),
+            above: samples(&self.layers[Layer::Above as usize]),
             doubtful: samples(&vec![Vec::new(); self.config.bins]),
             mean_range,
             median_range: self.median.median().unwrap_or(f64::INFINITY),
@@ -200,30 +203,37 @@ impl LiveProfile {
     }
 
     fn count(&mut self, place: Place, added: bool) {
+        let change = |count: &mut usize| {
+            *count = if added {
+                *count + 1
+            } else {
+                count.saturating_sub(1)
+            };
+        };
+        change(self.counter(place));
+        change(&mut self.counts.given);
+    }
+
+    /// What counts the points of this kind.
+    fn counter(&mut self, place: Place) -> &mut usize {
         let counts = &mut self.counts;
-        let slot = match place {
+        match place {
             Place::Bin { layer, .. } if layer.in_band() => &mut counts.used,
             Place::Bin { .. } => &mut counts.outside_band,
             Place::NonFinite => &mut counts.non_finite,
             Place::AtAgent => &mut counts.at_agent,
-        };
-        for slot in [slot, &mut counts.given] {
-            *slot = if added {
-                *slot + 1
-            } else {
-                slot.saturating_sub(1)
-            };
         }
     }
 
     /// The lists that hold a point of this bin.
     fn lists(&mut self, bin: usize, layer: Layer) -> impl Iterator<Item = &mut Vec<u64>> {
-        let level = (layer == Layer::Level).then_some(&mut self.level[bin]);
         let seen = layer.in_band().then_some(&mut self.seen[bin]);
-        std::iter::once(&mut self.any_height[bin])
-            .chain(seen)
-            .chain(level)
-            .chain((layer == Layer::Above).then_some(&mut self.above[bin]))
+        [
+            &mut self.layers[layer as usize][bin],
+            &mut self.any_height[bin],
+        ]
+        .into_iter()
+        .chain(seen)
     }
 
     fn refresh(&mut self, bin: usize) {
@@ -293,6 +303,40 @@ mod tests {
         assert_eq!(updated.counts, rebuilt.counts);
         assert_eq!(updated.median_range, rebuilt.median_range);
         assert!((updated.mean_range - rebuilt.mean_range).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_not_there_is_not_removed_and_changes_nothing() {
+        let plane = AffinePlane::from_up([0.0, 0.0, 1.0], [0.0; 3]).unwrap();
+        let config = ExitConfig {
+            band: HeightBand::Absolute {
+                from: -0.2,
+                to: 0.25,
+            },
+            ..Default::default()
+        };
+        let mut points = cloud(100);
+        points.push([2.0, 0.0, 0.0]);
+        points.push([0.0, -1.5, 1.0]);
+        let mut live = LiveProfile::new(&points, [0.0; 3], &plane, &config).unwrap();
+        let before = live.profile().unwrap();
+        // Bin and range of the first ones are those of a point at another height.
+        let absent = [
+            [2.0, 0.0, 1.0],
+            [2.0, 0.0, -1.0],
+            [0.0, -1.5, 0.0],
+            [0.0, -1.5, -1.0],
+            [2.5, 0.0, 0.0],
+            [0.0; 3],
+            [f64::NAN, 0.0, 0.0],
+        ];
+        for point in absent {
+            assert!(!live.remove(point), "{point:?}");
+            assert_eq!(live.profile().unwrap(), before, "{point:?}");
+        }
+        live.insert([f64::NAN, 0.0, 0.0]);
+        assert!(live.remove([f64::NAN, 0.0, 0.0]));
+        assert_eq!(live.profile().unwrap(), before);
     }
 
     proptest! {

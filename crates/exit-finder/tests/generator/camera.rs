@@ -8,7 +8,7 @@ use super::plan::{CEILING, Panel, Plan};
 /// Flying height, metres.
 pub const HEIGHT: f64 = 1.2;
 /// Half the vertical field of view: 25 degrees.
-const MAX_SLOPE: f64 = 0.466;
+pub(super) const MAX_SLOPE: f64 = 0.466;
 /// The densities of the plan hold for surfaces seen head on from here. A detector fills the image
 /// evenly, so a surface yields features in proportion to the solid angle it fills.
 const REFERENCE: f64 = 3.0;
@@ -17,8 +17,15 @@ const CLOSEST: f64 = 8.0;
 /// Beyond this range parallax is short: features are triangulated with probability (reach / range)².
 const REACH: f64 = 7.0;
 
-/// Points of the sparse map, metres.
-pub fn features(plan: &Plan, rng: &mut Pcg64) -> Vec<[f64; 3]> {
+/// A point of the sparse map and the feature it stands for, metres.
+#[derive(Debug, Clone, Copy)]
+pub struct Feature {
+    pub mapped: [f64; 3],
+    pub truth: [f64; 3],
+}
+
+/// The points of the sparse map.
+pub fn features(plan: &Plan, rng: &mut Pcg64) -> Vec<Feature> {
     let texture = rng.random_range(0.6..2.5);
     let mut points = Vec::new();
     for panel in &plan.panels {
@@ -56,7 +63,7 @@ fn whole(expected: f64, rng: &mut Pcg64) -> usize {
 }
 
 /// The map point of a feature seen from two places near the agent, or nothing.
-fn observe(plan: &Plan, p: [f64; 3], normal_to: [f64; 3], rng: &mut Pcg64) -> Option<[f64; 3]> {
+fn observe(plan: &Plan, p: [f64; 3], normal_to: [f64; 3], rng: &mut Pcg64) -> Option<Feature> {
     let eye = [plan.agent[0], plan.agent[1], HEIGHT];
     let ray: [f64; 3] = std::array::from_fn(|i| p[i] - eye[i]);
     let flat = ray[0].hypot(ray[1]);
@@ -77,11 +84,14 @@ fn observe(plan: &Plan, p: [f64; 3], normal_to: [f64; 3], rng: &mut Pcg64) -> Op
     }
     let sigma = 0.006 * range + 0.006 * range * range;
     let factor = 1.0 + sigma / range * normal(rng);
-    Some(std::array::from_fn(|i| eye[i] + ray[i] * factor.max(0.2)))
+    Some(Feature {
+        mapped: std::array::from_fn(|i| eye[i] + ray[i] * factor.max(0.2)),
+        truth: p,
+    })
 }
 
 /// Whether a panel lies between an eye and a point; the panel the point is on does not.
-fn hides(panel: &Panel, eye: [f64; 3], p: [f64; 3]) -> bool {
+pub(super) fn hides(panel: &Panel, eye: [f64; 3], p: [f64; 3]) -> bool {
     let d = [p[0] - eye[0], p[1] - eye[1]];
     let e = [panel.b[0] - panel.a[0], panel.b[1] - panel.a[1]];
     let cross = d[0] * e[1] - d[1] * e[0];

@@ -27,6 +27,8 @@ pub struct Suite {
     pub first_seed: u64,
     pub outliers: f64,
     pub clean: bool,
+    /// Whether the map tells which keyframe observes which point.
+    pub observed: bool,
 }
 
 impl Suite {
@@ -38,6 +40,9 @@ impl Suite {
                 let doors = rng.random_range(self.doors.clone());
                 let mut scan = scan(self.kind, doors, self.dark, &mut rng);
                 scan.points = corrupted(&scan.points, scan.agent, self.outliers, &mut rng);
+                if self.observed {
+                    scan.observe(&mut rng);
+                }
                 if self.clean {
                     scan.keep(&cleaned(&scan.points, scan.agent));
                 }
