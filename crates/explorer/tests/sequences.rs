@@ -70,6 +70,10 @@ fn bad_trajectories_are_named() {
         let line = complaint(&["evaluate", &file("bad.txt", content), &truth]);
         assert!(line.contains(said), "{content:?}: {line}");
     }
+    if cfg!(unix) {
+        let line = complaint(&["evaluate", "/dev/zero", &truth]);
+        assert!(line.contains("more than the"), "{line}");
+    }
     let usage = explorer(&["evaluate", &truth, &truth, "--align", "sim2"]);
     assert_eq!(usage.status.code(), Some(2));
 }

@@ -11,6 +11,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::bounded::{MOST_LIST_BYTES, MOST_PICTURE_BYTES, read_at_most};
 use super::calibration::{read_intrinsics, tum_camera};
 use super::listing::{Entry, pair, parse_list, parse_times};
 use super::{DecodeError, decode_depth, decode_gray};
@@ -22,7 +23,7 @@ use crate::image::GrayImage;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SequenceError {
-    /// A file or folder cannot be read.
+    /// A file or folder cannot be read, or is larger than a picture (128 MiB) or a list (64 MiB) may be.
     #[error("{} cannot be read", path.display())]
     File {
         /// Which.
@@ -171,7 +172,7 @@ impl ImageSequence {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, SequenceError> {
-    fs::read(path).map_err(|source| SequenceError::File {
+    read_at_most(path, MOST_PICTURE_BYTES).map_err(|source| SequenceError::File {
         path: path.to_owned(),
         source,
     })
@@ -180,7 +181,10 @@ fn read(path: &Path) -> Result<Vec<u8>, SequenceError> {
 /// The text of a file that may be absent, but not unreadable.
 pub(super) fn optional_text(folder: &Path, name: &str) -> Result<Option<String>, SequenceError> {
     let path = folder.join(name);
-    match fs::read_to_string(&path) {
+    let text = read_at_most(&path, MOST_LIST_BYTES).and_then(|bytes| {
+        String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+    });
+    match text {
         Ok(text) => Ok(Some(text)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(source) => Err(SequenceError::File { path, source }),
@@ -295,5 +299,29 @@ mod tests {
             assert!(matches!(error, SequenceError::File { .. }), "{error:?}");
             fs::remove_dir_all(&place).unwrap();
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_never_ends_is_refused_and_named() {
+        let refused = |error: SequenceError, name: &str| match error {
+            SequenceError::File { path, source } => {
+                assert!(path.ends_with(name), "{path:?}");
+                assert_eq!(source.kind(), io::ErrorKind::FileTooLarge);
+            }
+            other => panic!("{other:?}"),
+        };
+        for list in ["rgb.txt", "timestamps.txt", "camera-intrinsics.txt"] {
+            let place = folder(&format!("endless {list}"));
+            std::os::unix::fs::symlink("/dev/zero", place.join(list)).unwrap();
+            refused(ImageSequence::open(&place).unwrap_err(), list);
+            fs::remove_dir_all(&place).unwrap();
+        }
+        let place = folder("endless picture");
+        let line = "1.0 /dev/zero\n";
+        fs::write(place.join("rgb.txt"), line).unwrap();
+        let sequence = ImageSequence::open(&place).unwrap();
+        refused(sequence.load(0).unwrap_err(), "zero");
+        fs::remove_dir_all(&place).unwrap();
     }
 }

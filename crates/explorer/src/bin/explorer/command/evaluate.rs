@@ -3,14 +3,13 @@
 mod map_error;
 mod surface;
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
 use edge_slam::evaluation::{
     AbsolutePoseError, AlignBy, Alignment, ApeConfig, ErrorStatistics, EvaluationError, RpeConfig,
     RpeInterval, TimedPose, absolute_pose_error, relative_pose_error,
 };
+use edge_slam::sequence::read_at_most;
 use serde::Serialize;
 use slam_bridge::read_tum;
 
@@ -154,10 +153,14 @@ fn name(by: AlignBy) -> &'static str {
     }
 }
 
+/// A day at 30 poses a second.
+const MOST_TRAJECTORY_BYTES: u64 = 1 << 28;
+
 fn read(path: &Path) -> Result<Vec<TimedPose>, Failure> {
     let named = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-    let file = File::open(path).map_err(|error| Failure::new(named(&error), "check the path"))?;
-    let poses = read_tum(BufReader::new(file)).map_err(|error| {
+    let bytes = read_at_most(path, MOST_TRAJECTORY_BYTES);
+    let bytes = bytes.map_err(|error| Failure::new(named(&error), "check the path"))?;
+    let poses = read_tum(bytes.as_slice()).map_err(|error| {
         let advice = "a trajectory has lines of 'time tx ty tz qx qy qz qw'";
         Failure::new(named(&error), advice)
     })?;

@@ -1,5 +1,7 @@
 //! `explorer slam`: a recorded sequence to a trajectory, a map and pictures.
 
+mod picture;
+
 use std::fs;
 use std::path::Path;
 
@@ -11,10 +13,10 @@ use slam_bridge::{Map, Scale, TimedPose, write_map_folder, write_ply, write_tum}
 use crate::args::{Output, Slam};
 use crate::failure::Failure;
 use crate::output::{deliver, write_file};
-use crate::plot::{self, AxisPair, Figure, Layer, Shape, Track, color, trajectory};
+use crate::plot;
 use crate::progress::Progress;
 use crate::stopwatch::percentile;
-use crate::tracking::{self, DepthReport, Depths, Epoch, FusionReport, Tracking};
+use crate::tracking::{self, DepthReport, Depths, Epoch, FrameName, FusionReport, Tracking};
 
 /// The command's JSON object.
 #[derive(Debug, Serialize)]
@@ -68,13 +70,20 @@ pub(crate) fn run(arguments: &Slam, output: &Output) -> Result<(), Failure> {
     drop(progress);
     let report = found.report(&result, &depths, files);
     deliver(output, &report, &text(&report, folder), || {
-        Ok(found.figure(&report))
+        Ok(found.map_figure(&headline(&report)))
     })
 }
 
 /// What is written: poses in one frame and unit, and the map of the longest epoch.
 struct Found {
     poses: Vec<TimedPose>,
+    /// Which of them are by telemetry alone; empty without telemetry.
+    reckoned: Vec<bool>,
+    /// Times of all frames.
+    times: Vec<f64>,
+    /// Number of the longest epoch, counted from 1, and how many there are.
+    shown_epoch: [usize; 2],
+    tracked_in_all_epochs: usize,
     epoch: Epoch,
     edges: Vec<[f64; 3]>,
     fit: Option<edge_slam::depth::DepthFit>,
@@ -85,12 +94,9 @@ struct Found {
 
 impl Found {
     fn new(result: &Tracking, depths: &Depths) -> Result<Self, Failure> {
-        let longest = result
-            .epochs
-            .iter()
-            .rev()
-            .max_by_key(|epoch| epoch.poses.len());
-        let mut epoch = longest.cloned().unwrap_or_default();
+        let numbered = result.epochs.iter().enumerate().rev();
+        let longest = numbered.max_by_key(|(_, epoch)| epoch.poses.len());
+        let (number, mut epoch) = longest.map_or_else(Default::default, |(k, e)| (k, e.clone()));
         if epoch.poses.is_empty() {
             let advice = if depths.is_metric() {
                 "give frames with more texture and depth"
@@ -111,17 +117,21 @@ impl Found {
             epoch.edges.clear();
         }
         fusion.meters_per_unit = placed.map(|world| world.scaling());
-        let all = || result.epochs.iter().map(|e| e.poses.len()).sum();
-        let (poses, tracked) = match (placed, result.is_metric) {
-            (Some(_), _) => (result.fused.clone(), all()),
+        let all = result.epochs.iter().map(|e| e.poses.len()).sum();
+        let (poses, reckoned, tracked) = match (placed, result.is_metric) {
+            (Some(_), _) => (result.fused.clone(), result.reckoned.clone(), all),
             (None, true) => {
                 let poses = result.epochs.iter().flat_map(|e| e.poses.clone());
-                (poses.collect(), all())
+                (poses.collect(), Vec::new(), all)
             }
-            (None, false) => (epoch.poses.clone(), epoch.poses.len()),
+            (None, false) => (epoch.poses.clone(), Vec::new(), epoch.poses.len()),
         };
         Ok(Self {
             poses,
+            reckoned,
+            times: result.times.clone(),
+            shown_epoch: [number + 1, result.epochs.len()],
+            tracked_in_all_epochs: all,
             edges: epoch.edge_points(),
             epoch,
             fit,
@@ -155,8 +165,11 @@ impl Found {
         if !self.edges.is_empty() {
             write_file(&folder.join("edges.ply"), |file| write_ply(&edges, file))?;
             files.push("edges.ply");
+        } else {
+            tracking::remove_old(&folder.join("edges.ply"))?;
         }
-        plot::save(&self.map_figure(), &folder.join("trajectory.png"))?;
+        let headline = format!("{} poses, from above the first camera", self.poses.len());
+        plot::save(&self.map_figure(&headline), &folder.join("trajectory.png"))?;
         files.push("trajectory.png");
         Ok(files.into_iter().map(str::to_owned).collect())
     }
@@ -169,11 +182,17 @@ impl Found {
         frames: usize,
         depths: &mut Depths,
     ) -> Result<Vec<String>, Failure> {
-        let Some(loaded) = sequence.load(frames / 2).map_err(tracking::unreadable)? else {
+        let index = frames / 2;
+        let Some(loaded) = sequence.load(index).map_err(tracking::unreadable)? else {
             return Ok(Vec::new());
         };
+        let name = FrameName {
+            index,
+            count: sequence.len(),
+            time: loaded.time,
+        };
         let depth = depths.depth_if_used(&loaded.frame(), self.fit.as_ref())?;
-        let names = tracking::draw_frame(folder, &loaded.image.view(), depth.as_ref())?;
+        let names = tracking::draw_frame(folder, &loaded.image.view(), depth.as_ref(), &name)?;
         Ok(names.into_iter().map(str::to_owned).collect())
     }
 
@@ -184,7 +203,7 @@ impl Found {
             frames: result.frames,
             tracked: self.tracked,
             poses: self.poses.len(),
-            tracked_in_all_epochs: all(|epoch| epoch.poses.len()),
+            tracked_in_all_epochs: self.tracked_in_all_epochs,
             keyframes: all(|epoch| epoch.keyframes),
             ms_median: at(0.5),
             ms_p95: at(0.95),
@@ -200,42 +219,6 @@ impl Found {
 
     fn unit(&self) -> &'static str {
         if self.metric { "m" } else { "map units" }
-    }
-
-    fn map_figure(&self) -> Figure {
-        let place = |pose: &TimedPose| -> [f64; 3] { pose.pose.translation.vector.into() };
-        let track = Track {
-            label: format!("camera ({} poses)", self.poses.len()),
-            color: color::PATH,
-            dashed: false,
-            through: self.poses.iter().map(place).collect(),
-        };
-        // The camera's first frame: x to the right, z ahead, seen from above.
-        let axes = AxisPair::FROM_ABOVE;
-        let dots = |label: &str, points: &[[f64; 3]], tint, radius| {
-            let at = points.iter().map(|point| axes.project(point)).collect();
-            let label = format!("{label} ({})", points.len());
-            Layer::new(label, tint, Shape::Dots { at, radius })
-                .opacity(0.5)
-                .may_leave_frame()
-        };
-        let subtitle = format!("{} poses, from above the first camera", self.poses.len());
-        let mut figure =
-            trajectory::figure("Trajectory and map", &subtitle, self.unit(), axes, &[track]);
-        let sparse = self.epoch.map.positions();
-        let below = [
-            dots("edge points", &self.edges, color::FREE, 0.6),
-            dots("map points", &sparse, color::POINT, 1.1),
-        ];
-        figure.layers.splice(0..0, below);
-        figure
-    }
-
-    fn figure(&self, report: &SlamReport) -> Figure {
-        Figure {
-            subtitle: headline(report),
-            ..self.map_figure()
-        }
     }
 }
 

@@ -91,10 +91,13 @@ impl Depths {
 }
 
 #[cfg(feature = "depth-onnx")]
+const MOST_NETWORK_BYTES: u64 = 1 << 30;
+
+#[cfg(feature = "depth-onnx")]
 fn network(path: &std::path::Path) -> Result<Box<dyn DepthSource>, Failure> {
     let named = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-    let bytes =
-        std::fs::read(path).map_err(|error| Failure::new(named(&error), "check the path"))?;
+    let bytes = edge_slam::sequence::read_at_most(path, MOST_NETWORK_BYTES)
+        .map_err(|error| Failure::new(named(&error), "check the path"))?;
     let network = edge_slam::depth::OnnxDepth::new(&bytes).map_err(|error| {
         let advice =
             "give an ONNX file with the input and output that the README of edge-slam tells";
@@ -114,7 +117,7 @@ fn network(_: &std::path::Path) -> Result<Box<dyn DepthSource>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tracking::draw_frame;
+    use crate::tracking::{FrameName, draw_frame};
     use edge_slam::depth::ConstantDepth;
     use edge_slam::image::GrayImage;
 
@@ -138,15 +141,22 @@ mod tests {
             source: Box::new(ConstantDepth { distance: 2.0 }),
             name: "model",
         };
+        let name = FrameName {
+            index: 0,
+            count: 1,
+            time: 0.0,
+        };
         for (fit, drawn) in [
             (None, false),
             (Some(fit(LEAST_CORRELATION - 0.01)), false),
             (Some(fit(LEAST_CORRELATION)), true),
         ] {
-            let _ = std::fs::remove_dir_all(&folder);
+            // The folder may hold pictures of an earlier run.
             std::fs::create_dir_all(&folder).expect("a folder");
+            std::fs::write(folder.join("depth.png"), "old").expect("a file");
             let depth = depths.depth_if_used(&frame, fit.as_ref()).expect("depth");
-            let names = draw_frame(&folder, &image.view(), depth.as_ref()).expect("pictures");
+            let names =
+                draw_frame(&folder, &image.view(), depth.as_ref(), &name).expect("pictures");
             assert_eq!(names.contains(&"depth.png"), drawn, "{fit:?}");
             assert_eq!(folder.join("depth.png").exists(), drawn, "{fit:?}");
         }

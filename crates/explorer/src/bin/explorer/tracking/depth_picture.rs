@@ -3,40 +3,31 @@
 use core::fmt::Write as _;
 
 use edge_slam::depth::DepthImage;
-use resvg::tiny_skia::{Pixmap, PixmapPaint, Transform};
+use resvg::tiny_skia::Pixmap;
 
+use super::caption::{NARROWEST, begin, below, text};
 use super::pictures::{hue, paint};
 use crate::failure::Failure;
-use crate::plot;
 
-/// Height of the bar with its numbers, and the least width of the whole, picture pixels.
-const BAR: u32 = 64;
-const NARROWEST: u32 = 420;
+/// Height of the bar with its words, picture pixels.
+const BAR: u32 = 102;
 /// From the bar's end to the picture's.
 const MARGIN: f64 = 40.0;
 /// Colours that are told apart in the bar, and numbers below it.
 const STEPS: u32 = 96;
 const NUMBERS: u32 = 5;
+/// Depths beyond these shares of the known ones have the end colours: a few far readings would take all colours.
+const SHARES: [f64; 2] = [0.02, 0.98];
 
-/// Near red to far blue between the 2nd and 98th percentile, metres; black where unknown. The bar is below.
-pub(super) fn depth_picture(depth: &DepthImage) -> Result<Pixmap, Failure> {
+/// Near red to far blue between the 2nd and 98th percentile, metres; black where unknown. The bar, and `frame`, are below.
+pub(super) fn depth_picture(depth: &DepthImage, frame: &str) -> Result<Pixmap, Failure> {
     let (width, height) = (depth.width(), depth.height());
     let range = Range::of(depth);
     let image = paint(width, height, |x, y| {
         let color = hue(TURN * range.share(depth.get(x, y)?)).to_color_u8();
         Some([color.red(), color.green(), color.blue()])
     })?;
-    let across = image.width().max(NARROWEST);
-    let bar = plot::pixmap(&range.bar(across), 1.0).map_err(Failure::internal)?;
-    let mut whole = Pixmap::new(across, image.height() + bar.height())
-        .ok_or_else(|| Failure::internal(format!("{width} x {height} is no picture size")))?;
-    whole.fill(resvg::tiny_skia::Color::BLACK);
-    let below = i32::try_from(image.height()).map_err(Failure::internal)?;
-    for (part, y) in [(&image, 0), (&bar, below)] {
-        let plain = PixmapPaint::default();
-        whole.draw_pixmap(0, y, part.as_ref(), &plain, Transform::identity(), None);
-    }
-    Ok(whole)
+    below(&image, &range.bar(image.width().max(NARROWEST), frame))
 }
 
 /// From red to blue, turns of the colour circle.
@@ -60,8 +51,8 @@ impl Range {
             known.get(index).copied()
         };
         Self {
-            near: at(0.02).unwrap_or(0.0),
-            far: at(0.98).unwrap_or(1.0),
+            near: at(SHARES[0]).unwrap_or(0.0),
+            far: at(SHARES[1]).unwrap_or(1.0),
         }
     }
 
@@ -69,13 +60,10 @@ impl Range {
         ((z - self.near) / (self.far - self.near).max(1e-9)).clamp(0.0, 1.0) as f32
     }
 
-    /// The bar as SVG: colours, five numbers, the unit.
-    fn bar(&self, width: u32) -> String {
+    /// The bar as SVG: colours, five numbers, the unit, what has the end colours, the frame.
+    fn bar(&self, width: u32, frame: &str) -> String {
         let long = f64::from(width) - 2.0 * MARGIN;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{BAR}\">\
-             <rect width=\"{width}\" height=\"{BAR}\" fill=\"white\"/>"
-        );
+        let mut svg = begin(width, BAR);
         let step = long / f64::from(STEPS);
         for k in 0..STEPS {
             let color = hue(TURN * (k as f32 + 0.5) / STEPS as f32).to_color_u8();
@@ -88,18 +76,28 @@ impl Range {
                 step + 0.5
             );
         }
-        let text = |x: f64, y: u32, what: &str| {
-            format!(
-                "<text x=\"{x:.1}\" y=\"{y}\" font-family=\"sans-serif\" font-size=\"14\" text-anchor=\"middle\">{what}</text>"
-            )
-        };
         for k in 0..NUMBERS {
             let share = f64::from(k) / f64::from(NUMBERS - 1);
             let z = self.near + share * (self.far - self.near);
-            svg.push_str(&text(MARGIN + share * long, 38, &format!("{z:.2}")));
+            svg.push_str(&text(
+                MARGIN + share * long,
+                38,
+                "middle",
+                &format!("{z:.2}"),
+            ));
         }
-        let middle = f64::from(width) / 2.0;
-        svg.push_str(&text(middle, 56, "depth [m]; black: not known"));
+        let [low, high] = SHARES.map(|share| 100.0 * share);
+        let words = [
+            "depth [m]; black: not known".to_owned(),
+            format!(
+                "the {low:.0} % nearest and the {:.0} % farthest have the end colours",
+                100.0 - high
+            ),
+            frame.to_owned(),
+        ];
+        for (baseline, line) in (56..).step_by(20).zip(&words) {
+            svg.push_str(&text(f64::from(width) / 2.0, baseline, "middle", line));
+        }
         svg + "</svg>"
     }
 }
@@ -115,12 +113,21 @@ mod tests {
         let depth = DepthImage::new(values, 10, 10).expect("a depth image");
         let range = Range::of(&depth);
         assert!((range.near - 1.01).abs() < 1e-6 && (range.far - 1.97).abs() < 1e-6);
-        let bar = range.bar(420);
-        for number in ["1.01", "1.25", "1.49", "1.73", "1.97", "depth [m]"] {
+        let bar = range.bar(460, "frame 3");
+        for number in [
+            "1.01",
+            "1.25",
+            "1.49",
+            "1.73",
+            "1.97",
+            "depth [m]",
+            "the 2 % nearest and the 2 % farthest",
+            "frame 3",
+        ] {
             assert!(bar.contains(&format!(">{number}")), "{number}: {bar}");
         }
-        let picture = depth_picture(&depth).expect("a picture");
-        assert_eq!((picture.width(), picture.height()), (420, 20 + BAR));
+        let picture = depth_picture(&depth, "frame 3").expect("a picture");
+        assert_eq!((picture.width(), picture.height()), (NARROWEST, 20 + BAR));
         // The nearest pixel is red, as the bar's left end.
         let at = |x, y| {
             let color = picture.pixel(x, y).expect("inside").demultiply();
@@ -134,7 +141,7 @@ mod tests {
     #[test]
     fn a_depth_image_that_knows_nothing_is_black() {
         let nothing = DepthImage::new(vec![f32::NAN; 6], 3, 2).expect("a depth image");
-        let picture = depth_picture(&nothing).expect("a picture");
+        let picture = depth_picture(&nothing, "").expect("a picture");
         assert_eq!(picture.width(), NARROWEST);
         let pixel = picture.pixel(0, 0).expect("inside");
         assert_eq!((pixel.red(), pixel.green(), pixel.blue()), (0, 0, 0));

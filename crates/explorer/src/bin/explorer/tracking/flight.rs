@@ -1,10 +1,10 @@
 //! The telemetry of a recorded flight: the state lines of a recording by `tello-sdk`, for the filter.
 
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use edge_slam::fusion::{AttitudeSample, FlightSample, VelocityFrame};
+use edge_slam::sequence::read_at_most;
 use explorer::{attitude_sample, flight_sample, velocity_frame};
 use tello_sdk::record::{Channel, Records};
 use tello_sdk::{StateConvention, StateLine};
@@ -14,6 +14,8 @@ use crate::failure::Failure;
 
 /// The recording that is looked for beside the frames.
 const NAME: &str = "flight.tello";
+/// Most bytes of a recording, its video included.
+const MOST_BYTES: u64 = 1 << 30;
 
 /// What a drone said of itself while it filmed the sequence.
 #[derive(Debug, Clone)]
@@ -36,7 +38,7 @@ impl Flight {
             Some(TelemetryChoice::File(path)) => (path.clone(), true),
             None => (arguments.sequence.join(NAME), false),
         };
-        let bytes = match fs::read(&path) {
+        let bytes = match read_at_most(&path, MOST_BYTES) {
             Err(error) if error.kind() == ErrorKind::NotFound && !wanted => return Ok(None),
             read => read.map_err(|error| unusable(&path, &error, "check the path"))?,
         };

@@ -101,14 +101,14 @@ impl Fusing {
         })
     }
 
-    /// The frame's pose by the filter; `None` outside of the telemetry.
+    /// The frame's pose by the filter, and whether it took a visual one; `None` outside of the telemetry.
     pub(crate) fn observe(
         &mut self,
         time: f64,
         tracked: &Tracked,
         epoch: u64,
         is_metric: bool,
-    ) -> Result<Option<Isometry3<f64>>, Failure> {
+    ) -> Result<Option<(Isometry3<f64>, bool)>, Failure> {
         self.feed(time)?;
         if self.next == 0 || time > self.end {
             self.report.outside += 1;
@@ -124,7 +124,11 @@ impl Fusing {
             Err(_) => self.reckon(time, epoch, is_metric)?,
         };
         self.count(&fused);
-        Ok(Some(self.written_from_filter * fused.world_from_camera))
+        let is_seen = fused.outcome.is_some_and(|outcome| outcome.accepted);
+        Ok(Some((
+            self.written_from_filter * fused.world_from_camera,
+            is_seen,
+        )))
     }
 
     /// Takes the odometry of the present epoch to the written world, once its unit is known.

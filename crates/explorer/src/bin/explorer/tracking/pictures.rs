@@ -1,6 +1,7 @@
 //! Pictures of one frame: features, edges and L-junctions, each as a PNG over the grey image, and its depth.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use edge_slam::depth::DepthImage;
@@ -12,6 +13,7 @@ use edge_slam::image::GrayView;
 use edge_slam::odometry::OdometryConfig;
 use resvg::tiny_skia::{Color, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
+use super::caption::Caption;
 use super::depth_picture::depth_picture;
 use crate::failure::Failure;
 
@@ -20,12 +22,31 @@ pub(super) const ZOOM: f32 = 2.0;
 /// Shortest chain that is drawn, pixels.
 const SHORTEST_CHAIN: usize = 20;
 
-/// Draws features.png, edges.png, junctions.png and, where there is depth, depth.png.
+/// A frame's place in its sequence.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrameName {
+    /// Counted from 0.
+    pub(crate) index: usize,
+    pub(crate) count: usize,
+    /// Seconds.
+    pub(crate) time: f64,
+}
+
+impl FrameName {
+    fn text(&self) -> String {
+        let (number, count) = (self.index + 1, self.count);
+        format!("frame {number} of {count}, at {:.3} s", self.time)
+    }
+}
+
+/// Draws features.png, edges.png, junctions.png and, where there is depth, depth.png; without depth an older depth.png goes.
 pub(crate) fn draw_frame(
     folder: &Path,
     image: &GrayView<'_>,
     depth: Option<&DepthImage>,
+    name: &FrameName,
 ) -> Result<Vec<&'static str>, Failure> {
+    let frame = name.text();
     // Those that tracking uses.
     let features = OrbExtractor::new(OdometryConfig::default().orb)
         .map_err(Failure::internal)?
@@ -34,12 +55,16 @@ pub(crate) fn draw_frame(
     let chains = trace_chains(&edges, SHORTEST_CHAIN);
     let junctions = find_junctions(&edges, &chains, depth, &JunctionConfig::default());
     let mut pictures = vec![
-        ("features.png", features_over(image, &features.keypoints)?),
-        ("edges.png", edges_over(image, &chains)?),
-        ("junctions.png", junctions_over(image, &junctions)?),
+        (
+            "features.png",
+            features_over(image, &features.keypoints, &frame)?,
+        ),
+        ("edges.png", edges_over(image, &chains, &frame)?),
+        ("junctions.png", junctions_over(image, &junctions, &frame)?),
     ];
-    if let Some(depth) = depth {
-        pictures.push(("depth.png", depth_picture(depth)?));
+    match depth {
+        Some(depth) => pictures.push(("depth.png", depth_picture(depth, &frame)?)),
+        None => remove_old(&folder.join("depth.png"))?,
     }
     let mut names = Vec::new();
     for (name, picture) in pictures {
@@ -51,8 +76,20 @@ pub(crate) fn draw_frame(
     Ok(names)
 }
 
+/// Removes what an earlier run wrote and this one does not: it would be taken for this one's.
+pub(crate) fn remove_old(path: &Path) -> Result<(), Failure> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(Failure::write(path, &error)),
+        _ => Ok(()),
+    }
+}
+
 /// Circles as large as the patch, with the direction, coloured by level.
-fn features_over(image: &GrayView<'_>, keypoints: &[Keypoint]) -> Result<Pixmap, Failure> {
+fn features_over(
+    image: &GrayView<'_>,
+    keypoints: &[Keypoint],
+    frame: &str,
+) -> Result<Pixmap, Failure> {
     let mut picture = ground(image, 1.0)?;
     for keypoint in keypoints {
         let radius = 4.0 * 1.2_f32.powi(i32::from(keypoint.octave));
@@ -62,18 +99,28 @@ fn features_over(image: &GrayView<'_>, keypoints: &[Keypoint]) -> Result<Pixmap,
         path.push_circle(x, y, radius);
         path.move_to(x, y);
         path.line_to(x + radius * cos, y + radius * sin);
-        stroke(
-            &mut picture,
-            path,
-            hue(f32::from(keypoint.octave) / 8.0),
-            0.6,
-        );
+        stroke(&mut picture, path, level_color(keypoint.octave), 0.6);
     }
-    Ok(picture)
+    let level = |octave: u8| (level_color(octave), format!("{octave}"));
+    let caption = Caption {
+        colors: (0..LEVELS).map(level).collect(),
+        lines: vec![
+            "colour: pyramid level; radius grows with it; stroke: direction".to_owned(),
+            format!("{} ORB features; {frame}", keypoints.len()),
+        ],
+    };
+    caption.under(&picture)
+}
+
+/// Pyramid levels of the default extractor.
+const LEVELS: u8 = 8;
+
+fn level_color(octave: u8) -> Color {
+    hue(f32::from(octave) / f32::from(LEVELS))
 }
 
 /// Chains, neighbours in different colours.
-fn edges_over(image: &GrayView<'_>, chains: &[EdgeChain]) -> Result<Pixmap, Failure> {
+fn edges_over(image: &GrayView<'_>, chains: &[EdgeChain], frame: &str) -> Result<Pixmap, Failure> {
     let mut picture = ground(image, 0.45)?;
     for (index, chain) in chains.iter().enumerate() {
         let mut path = PathBuilder::new();
@@ -88,10 +135,29 @@ fn edges_over(image: &GrayView<'_>, chains: &[EdgeChain]) -> Result<Pixmap, Fail
         // The golden ratio spreads the hues.
         stroke(&mut picture, path, hue(index as f32 * 0.618_034), 0.9);
     }
-    Ok(picture)
+    let caption = Caption {
+        lines: vec![
+            "colours only tell neighbouring chains apart".to_owned(),
+            format!(
+                "{} chains of {SHORTEST_CHAIN} pixels or more; {frame}",
+                chains.len()
+            ),
+        ],
+        ..Caption::default()
+    };
+    caption.under(&picture)
 }
 
-fn junctions_over(image: &GrayView<'_>, junctions: &[LJunction]) -> Result<Pixmap, Failure> {
+/// Of an L-junction's arms and vertex.
+const ARM: (u8, u8, u8) = (255, 196, 0);
+const VERTEX: (u8, u8, u8) = (235, 40, 50);
+
+fn junctions_over(
+    image: &GrayView<'_>,
+    junctions: &[LJunction],
+    frame: &str,
+) -> Result<Pixmap, Failure> {
+    let [arm_color, vertex_color] = [ARM, VERTEX].map(|(r, g, b)| Color::from_rgba8(r, g, b, 255));
     let mut picture = ground(image, 0.7)?;
     for junction in junctions {
         let [x, y] = junction.vertex.map(|value| value as f32);
@@ -102,17 +168,19 @@ fn junctions_over(image: &GrayView<'_>, junctions: &[LJunction]) -> Result<Pixma
             arms.move_to(x, y);
             arms.line_to(x + dx * length, y + dy * length);
         }
-        stroke(&mut picture, arms, Color::from_rgba8(255, 196, 0, 255), 1.4);
+        stroke(&mut picture, arms, arm_color, 1.4);
         let mut vertex = PathBuilder::new();
         vertex.push_circle(x, y, 3.0);
-        stroke(
-            &mut picture,
-            vertex,
-            Color::from_rgba8(235, 40, 50, 255),
-            1.4,
-        );
+        stroke(&mut picture, vertex, vertex_color, 1.4);
     }
-    Ok(picture)
+    let caption = Caption {
+        colors: vec![
+            (arm_color, "arm, as long as it is supported".to_owned()),
+            (vertex_color, "vertex".to_owned()),
+        ],
+        lines: vec![format!("{} L-junctions; {frame}", junctions.len())],
+    };
+    caption.under(&picture)
 }
 
 /// The image, darkened by a factor so that what is drawn over it stands out.

@@ -30,6 +30,10 @@ pub(crate) struct Tracking {
     pub(crate) is_metric: bool,
     /// Poses by the filter, of all epochs in one world and in metres; empty without telemetry.
     pub(crate) fused: Vec<TimedPose>,
+    /// Which of these rest on telemetry alone: no visual pose, or one that the filter refused.
+    pub(crate) reckoned: Vec<bool>,
+    /// Times of all frames.
+    pub(crate) times: Vec<f64>,
     pub(crate) fusion: FusionReport,
 }
 
@@ -83,6 +87,8 @@ pub(crate) fn track(
         milliseconds: Vec::with_capacity(count),
         is_metric: depths.is_metric(),
         fused: Vec::new(),
+        reckoned: Vec::new(),
+        times: sequence.times().take(count).collect(),
         fusion: FusionReport::none(),
     };
     progress.count("tracking", count);
@@ -157,9 +163,10 @@ fn fuse(
     odometry: &Odometry,
 ) -> Result<(), Failure> {
     let epoch = odometry.current_map().epoch;
-    let pose = fusing.observe(time, tracked, epoch, odometry.is_metric())?;
-    let pose = pose.map(|pose| TimedPose { time, pose });
-    tracking.fused.extend(pose);
+    if let Some((pose, is_seen)) = fusing.observe(time, tracked, epoch, odometry.is_metric())? {
+        tracking.fused.push(TimedPose { time, pose });
+        tracking.reckoned.push(!is_seen);
+    }
     if let Some(epoch) = tracking.epochs.last_mut() {
         epoch.placed = fusing.placed();
     }
