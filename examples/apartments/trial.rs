@@ -25,7 +25,7 @@ const BUDGET: usize = 100_000;
 const POINTS_PER_CLUSTER: usize = 12;
 
 /// What came of some queries in one space.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Tally {
     /// Queries with a way in truth.
     pub(crate) feasible: usize,
@@ -36,6 +36,21 @@ pub(crate) struct Tally {
     pub(crate) bumping: usize,
     /// Solved ones on which the body with its margin touches something solid.
     pub(crate) touching: usize,
+    /// Least distance of a path's middle to something solid, metres.
+    pub(crate) least: f64,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Tally {
+            feasible: 0,
+            solved: 0,
+            crossing: 0,
+            bumping: 0,
+            touching: 0,
+            least: f64::INFINITY,
+        }
+    }
 }
 
 impl Tally {
@@ -45,6 +60,7 @@ impl Tally {
         self.crossing += other.crossing;
         self.bumping += other.bumping;
         self.touching += other.touching;
+        self.least = self.least.min(other.least);
     }
 
     fn judge(&mut self, scan: &Scan, path: Option<Path<3>>) {
@@ -55,6 +71,7 @@ impl Tally {
             .map(|leg| scan.world.segment_clearance(leg[0], leg[1]))
             .fold(f64::INFINITY, f64::min);
         self.solved += 1;
+        self.least = self.least.min(clearance);
         self.crossing += usize::from(clearance <= 0.0);
         self.bumping += usize::from(clearance < BODY);
         self.touching += usize::from(clearance < RADIUS);
@@ -67,7 +84,7 @@ pub(crate) struct Belief {
     paper: ObstacleSet,
     /// Hulls of the points that no rays contradict.
     hulls: ObstacleSet,
-    free: FreeSpace,
+    pub(crate) free: FreeSpace,
 }
 
 impl Belief {
