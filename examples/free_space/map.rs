@@ -106,10 +106,13 @@ fn views(map: &Map, similarity: &Similarity) -> Result<Views, ViewsError> {
         .points
         .iter()
         .map(|point| point.observers.iter().filter_map(place).collect());
+    let scaled = |distance: f64| distance * similarity.scale;
+    let reach = (map.points.iter()).map(|point| point.max_distance.map(scaled));
     Views::new(
         map.keyframes.iter().map(center).collect(),
         observers.collect(),
-    )
+    )?
+    .with_max_distances(reach.collect())
 }
 
 impl AlignedMap {

@@ -276,7 +276,9 @@ fn views(map: &Map) -> Result<Views, Box<dyn Error>> {
     let centers = (map.keyframes.iter()).map(|keyframe| keyframe.center().into());
     let observers =
         (map.points.iter()).map(|point| point.observers.iter().filter_map(place).collect());
-    Ok(Views::new(centers.collect(), observers.collect())?)
+    let reach = map.points.iter().map(|point| point.max_distance);
+    let views = Views::new(centers.collect(), observers.collect())?;
+    Ok(views.with_max_distances(reach.collect())?)
 }
 
 #[cfg(test)]

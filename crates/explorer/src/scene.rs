@@ -320,7 +320,10 @@ pub(crate) fn views(map: &Map) -> Result<Option<Views>, ViewsError> {
         .iter()
         .map(|point| observer_indices(map, &point.observers))
         .collect();
-    Views::new(centers, observers).map(Some)
+    let reach = map.points.iter().map(|point| point.max_distance).collect();
+    Views::new(centers, observers)?
+        .with_max_distances(reach)
+        .map(Some)
 }
 
 /// Positions of the observers in the list of keyframes; observers that the map does not hold are left out.
@@ -475,6 +478,7 @@ mod tests {
                     id: PointId(points.len() as u64),
                     position: position.into(),
                     viewing_direction: None,
+                    max_distance: None,
                     observers: tells_observers
                         .then_some(KeyFrameId(keyframe))
                         .into_iter()

@@ -118,6 +118,7 @@ mod tests {
             id: PointId(id),
             position: Point3::new(x, 0.0, 4.0),
             viewing_direction: None,
+            max_distance: None,
             observers: vec![KeyFrameId(0), KeyFrameId(1)],
         };
         Map {

@@ -19,6 +19,9 @@ pub struct MapPoint {
     pub position: Point3<f64>,
     /// Mean viewing direction, from the cameras to the point, unit length, where the source gives it.
     pub viewing_direction: Option<Vector3<f64>>,
+    /// The largest distance from which its image feature can be recognised, map units, above 0, where the source gives
+    /// it (`max_distance` of ORB-SLAM). Over the viewing distance it tells how coarse the feature is.
+    pub max_distance: Option<f64>,
     /// The keyframes that observe it, ascending; empty when the source tells no observations.
     pub observers: Vec<KeyFrameId>,
 }
@@ -104,6 +107,7 @@ impl Map {
                 id: PointId(id),
                 position: position.into(),
                 viewing_direction: None,
+                max_distance: None,
                 observers: Vec::new(),
             });
         Self {

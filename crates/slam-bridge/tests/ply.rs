@@ -48,13 +48,15 @@ fn unknown_elements_lists_and_properties_are_skipped() {
         property list uchar int ids\r\nelement vertex 2\r\nproperty uchar red\r\n\
         property list uchar float weights\r\nproperty double x\r\nproperty double y\r\n\
         property double z\r\nproperty float nx\r\nproperty float ny\r\nproperty float nz\r\n\
-        property uint id\r\nelement face 1\r\nproperty list uchar int vertex_indices\r\n\
-        end_header\r\n3 1 2 3\r\n255 2 0.5 0.5 1 2 3 0 0 2 70\r\n0 0 4 5 6 0 0 0 8\r\n3 0 1 0\r\n";
+        property uint id\r\nproperty float max_distance\r\nelement face 1\r\nproperty list uchar int vertex_indices\r\n\
+        end_header\r\n3 1 2 3\r\n255 2 0.5 0.5 1 2 3 0 0 2 70 2.5\r\n0 0 4 5 6 0 0 0 8 0\r\n3 0 1 0\r\n";
     let map = read_ply(file.as_bytes()).expect("good file");
     assert_eq!(map.positions(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!(map.points[0].id.0, 70);
     assert_eq!(map.points[0].viewing_direction.map(|d| d.z), Some(1.0));
     assert_eq!(map.points[1].viewing_direction, None);
+    assert_eq!(map.points[0].max_distance, Some(2.5));
+    assert_eq!(map.points[1].max_distance, None);
 }
 
 #[test]

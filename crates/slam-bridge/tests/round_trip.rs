@@ -27,6 +27,7 @@ fn map() -> impl Strategy<Value = Map> {
         uniform3(-1e9..1e9_f64),
         proptest::option::of(uniform3(-1.0..1.0_f64)),
         0_u8..=255,
+        proptest::option::weighted(0.1, 1e-3..1e9_f64),
     );
     let points = proptest::collection::vec(point, 1..30);
     let keyframes = proptest::collection::vec((pose(), 0.0..1e9_f64), 0..8);
@@ -52,13 +53,14 @@ fn map() -> impl Strategy<Value = Map> {
     )
 }
 
-type RawPoint = ([f64; 3], Option<[f64; 3]>, u8);
+type RawPoint = ([f64; 3], Option<[f64; 3]>, u8, Option<f64>);
 
 fn map_point(keyframes: usize) -> impl Fn((usize, RawPoint)) -> MapPoint {
-    move |(index, (position, direction, seen))| MapPoint {
+    move |(index, (position, direction, seen, max_distance))| MapPoint {
         id: PointId(1000 - 7 * index as u64),
         position: position.into(),
         viewing_direction: direction.and_then(|d| Vector3::from(d).try_normalize(1e-3)),
+        max_distance,
         observers: (0..keyframes.min(8))
             .filter(|bit| seen >> bit & 1 == 1)
             .map(|bit| KeyFrameId(3 * bit as u64))
@@ -79,8 +81,8 @@ fn assert_same(read: &Map, written: &Map) {
     assert_eq!(read.points.len(), written.points.len());
     for (a, b) in read.points.iter().zip(&written.points) {
         assert_eq!(
-            (a.id, a.position, &a.observers),
-            (b.id, b.position, &b.observers)
+            (a.id, a.position, a.max_distance, &a.observers),
+            (b.id, b.position, b.max_distance, &b.observers)
         );
         let (a, b) = (a.viewing_direction, b.viewing_direction);
         assert_eq!(a.is_some(), b.is_some());

@@ -13,7 +13,9 @@ mod labelled;
 
 use labelled::{Labelled, average_precision, f1, false_positive_rate};
 use std::error::Error;
-use submodular_minimax::{Cues, DepthSource, OutlierConfig, OutlierError, Views, remove_outliers};
+use submodular_minimax::{
+    Cues, DepthSource, OutlierConfig, OutlierError, Tolerance, Views, remove_outliers,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folders: Vec<String> = std::env::args().skip(1).collect();
@@ -69,6 +71,25 @@ fn readings() -> Vec<(&'static str, OutlierConfig, bool)> {
         (
             "- without range and parallax",
             changed(|cues| (cues.far_exponent, cues.parallax_exponent) = (0.0, 0.0)),
+            true,
+        ),
+        (
+            "- without coarseness",
+            changed(|cues| cues.coarseness_exponent = 0.0),
+            true,
+        ),
+        (
+            "- without hiding rays",
+            changed(|cues| cues.hidden_exponent = 0.0),
+            true,
+        ),
+        (
+            "- fixed tolerances, 8 and 5.5",
+            changed(|cues| {
+                if cues.tolerance != Tolerance::Fixed(8.0) {
+                    cues.tolerance = Tolerance::Fixed(5.5);
+                }
+            }),
             true,
         ),
         (

@@ -18,6 +18,8 @@ pub struct Views {
     viewpoints: Vec<[f64; 3]>,
     offsets: Vec<usize>,
     observers: Vec<u32>,
+    /// 0 where unknown; empty where nothing is known.
+    max_distances: Vec<f64>,
 }
 
 /// Why a [`Views`] cannot be made.
@@ -43,6 +45,24 @@ pub enum ViewsError {
         /// How many camera positions there are.
         viewpoints: usize,
     },
+    /// There are more or fewer distances than points.
+    #[error("{distances} distances for {points} points: pass one a point, None where unknown")]
+    Mismatch {
+        /// How many distances were given.
+        distances: usize,
+        /// How many points the observations speak of.
+        points: usize,
+    },
+    /// A distance is NaN, infinite or not above 0.
+    #[error(
+        "distance {distance} of point {point} is not finite and above 0: pass None where unknown"
+    )]
+    MaxDistance {
+        /// Index of the point.
+        point: usize,
+        /// The distance that was given.
+        distance: f64,
+    },
 }
 
 impl Views {
@@ -61,6 +81,7 @@ impl Views {
             viewpoints,
             offsets: vec![0],
             observers: Vec::new(),
+            max_distances: Vec::new(),
         };
         for (point, mut row) in observers.into_iter().enumerate() {
             row.sort_unstable();
@@ -87,6 +108,37 @@ impl Views {
         Self::new(vec![position], vec![vec![0]; points])
     }
 
+    /// Adds the largest distance from which the feature of each point can be recognised, where known: `max_distance` of
+    /// ORB-SLAM, in the unit of the points. Over a point's range it tells how coarse its feature is, hence how
+    /// loosely it is placed.
+    ///
+    /// # Errors
+    /// Another number of points, a distance that is not finite and above 0.
+    pub fn with_max_distances(mut self, distances: Vec<Option<f64>>) -> Result<Self, ViewsError> {
+        if distances.len() != self.points() {
+            return Err(ViewsError::Mismatch {
+                distances: distances.len(),
+                points: self.points(),
+            });
+        }
+        let good = |distance: &f64| distance.is_finite() && *distance > 0.0;
+        for (point, distance) in distances.iter().enumerate() {
+            if let Some(distance) = distance.filter(|distance| !good(distance)) {
+                return Err(ViewsError::MaxDistance { point, distance });
+            }
+        }
+        let known = distances.iter().any(Option::is_some);
+        let distances = distances
+            .into_iter()
+            .map(|distance| distance.unwrap_or(0.0));
+        self.max_distances = if known {
+            distances.collect()
+        } else {
+            Vec::new()
+        };
+        Ok(self)
+    }
+
     /// How many points the observations speak of.
     #[must_use]
     pub fn points(&self) -> usize {
@@ -102,6 +154,12 @@ impl Views {
     /// The cameras that see point `point`, ascending; none for an index out of range.
     pub fn observers(&self, point: usize) -> impl ExactSizeIterator<Item = usize> + Clone + '_ {
         self.row(point).iter().map(|&c| c as usize)
+    }
+
+    /// The largest distance from which the feature of point `point` can be recognised, where known.
+    #[must_use]
+    pub fn max_distance(&self, point: usize) -> Option<f64> {
+        self.max_distances.get(point).copied().filter(|&d| d > 0.0)
     }
 
     pub(crate) fn row(&self, point: usize) -> &[u32] {
@@ -135,6 +193,30 @@ mod tests {
         assert_eq!(views.observers(1).len(), 0);
         assert_eq!(views.observers(9).len(), 0);
         assert_eq!(views.points(), 2);
+    }
+
+    #[test]
+    fn distances_are_checked_and_told_where_known() {
+        let views = || Views::from_position([0.0; 3], 3).unwrap();
+        assert_eq!(views().max_distance(0), None);
+        let known = views().with_max_distances(vec![Some(2.0), None, Some(0.5)]);
+        let known = known.unwrap();
+        let told: Vec<_> = (0..4).map(|v| known.max_distance(v)).collect();
+        assert_eq!(told, [Some(2.0), None, Some(0.5), None]);
+        assert_eq!(views().with_max_distances(vec![None; 3]), Ok(views()));
+        let error = views().with_max_distances(vec![None; 2]).unwrap_err();
+        assert_eq!(
+            error,
+            ViewsError::Mismatch {
+                distances: 2,
+                points: 3
+            }
+        );
+        for distance in [0.0, -1.0, f64::INFINITY] {
+            let error = views().with_max_distances(vec![None, Some(distance), None]);
+            assert_eq!(error, Err(ViewsError::MaxDistance { point: 1, distance }));
+        }
+        assert!(views().with_max_distances(vec![Some(f64::NAN); 3]).is_err());
     }
 
     #[test]

@@ -66,6 +66,7 @@ impl MapBuilder {
                 id: PointId(self.map.points.len() as u64),
                 position,
                 viewing_direction: (position.coords - centre).try_normalize(1e-12),
+                max_distance: None,
                 observers: vec![id],
             });
         }

@@ -24,6 +24,7 @@ impl SyntheticSlam {
                 .information
                 .viewing_direction()
                 .map(|direction| map_from_space.rotation * direction),
+            max_distance: None,
             observers: point.observers.clone(),
         });
         let keyframes = self

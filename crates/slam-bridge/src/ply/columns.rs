@@ -12,6 +12,7 @@ use crate::{Fault, MapPoint, PointId, ReadError};
 pub(super) struct Columns {
     position: [usize; 3],
     normal: Option<[usize; 3]>,
+    max_distance: Option<usize>,
     id: Option<usize>,
     used_ids: BTreeSet<u64>,
 }
@@ -26,6 +27,7 @@ impl Columns {
         Ok(Self {
             position,
             normal: three(["nx", "ny", "nz"]),
+            max_distance: vertex.column("max_distance"),
             id: vertex.column("id"),
             used_ids: BTreeSet::new(),
         })
@@ -48,6 +50,10 @@ impl Columns {
             id: PointId(self.take_id(index, row)?),
             position: Point3::from(self.position.map(value)),
             viewing_direction,
+            max_distance: self
+                .max_distance
+                .map(value)
+                .filter(|distance| distance.is_finite() && *distance > 0.0),
             observers: Vec::new(),
         })
     }

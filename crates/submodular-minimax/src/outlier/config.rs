@@ -253,7 +253,7 @@ impl Cues {
             not_negative(field, value)?;
         }
         match self.tolerance {
-            Tolerance::Fixed(times) => positive("tolerance", times),
+            Tolerance::Fixed(times) | Tolerance::BySpread(times) => positive("tolerance", times),
             Tolerance::ByDirt => Ok(()),
         }
     }

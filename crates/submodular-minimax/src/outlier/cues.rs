@@ -36,6 +36,12 @@ pub struct Cues {
     pub far_exponent: f64,
     /// Exponent of (the angle in radians between the directions that a point is seen from + 0.005), at least 0.
     pub parallax_exponent: f64,
+    /// Exponent of the largest distance from which a feature can be recognised over its point's range
+    /// ([`Views::with_max_distances`](crate::Views::with_max_distances)), at least 0; where unknown the median counts.
+    pub coarseness_exponent: f64,
+    /// Exponent of (1 + hiding rays), at least 0: of cameras that do not see the point, the rays that pass it
+    /// and end well before it.
+    pub hidden_exponent: f64,
     /// How many times the median badness is kept.
     pub tolerance: Tolerance,
 }
@@ -46,13 +52,16 @@ pub struct Cues {
 pub enum Tolerance {
     /// This many times, above 0.
     Fixed(f64),
+    /// As the spread of the badness tells: the exponential of this, above 0, times ln(ninth decile / median)^0.7; between
+    /// e and e³ times. Maps whose good points differ more are cut later, if not quite by as much.
+    BySpread(f64),
     /// As the map's own dirt tells: exp(0.08 / q), where q is the disagreement in depth with the
     /// nearest image neighbours that one point in ten exceeds; between 2.5 and 9 times.
     ByDirt,
 }
 
 impl Cues {
-    /// Where all that is known is one position: 0.8, 0.25, 0.15, 0.1, 0, 0, as the dirt tells.
+    /// Where all that is known is one position: 0.8, 0.25, 0.15, 0.1, 0, 0, 0, 0, as the dirt tells.
     #[must_use]
     pub fn one_position() -> Self {
         Self {
@@ -62,11 +71,13 @@ impl Cues {
             violation_exponent: 0.1,
             far_exponent: 0.0,
             parallax_exponent: 0.0,
+            coarseness_exponent: 0.0,
+            hidden_exponent: 0.0,
             tolerance: Tolerance::ByDirt,
         }
     }
 
-    /// For triangulated points: 1, 1, 0, 0.2, 0, 0, 8 times.
+    /// For triangulated points: 1, 1, 0, 0.2, 0, 0, 0, 0, 8 times.
     #[must_use]
     pub fn triangulated() -> Self {
         Self {
@@ -76,11 +87,13 @@ impl Cues {
             violation_exponent: 0.2,
             far_exponent: 0.0,
             parallax_exponent: 0.0,
+            coarseness_exponent: 0.0,
+            hidden_exponent: 0.0,
             tolerance: Tolerance::Fixed(8.0),
         }
     }
 
-    /// For measured depths: 0.8, 0, 0.2, 0.2, 0.2, 0.3, 5.5 times.
+    /// For measured depths: 0.8, 0, 0.2, 0.2, 0.1, 0.3, 0.5, 0.1, as the spread tells with 2.
     #[must_use]
     pub fn measured() -> Self {
         Self {
@@ -88,14 +101,16 @@ impl Cues {
             depth_exponent: 0.0,
             near_depth_exponent: 0.2,
             violation_exponent: 0.2,
-            far_exponent: 0.2,
+            far_exponent: 0.1,
             parallax_exponent: 0.3,
-            tolerance: Tolerance::Fixed(5.5),
+            coarseness_exponent: 0.5,
+            hidden_exponent: 0.1,
+            tolerance: Tolerance::BySpread(2.0),
         }
     }
 
     /// Every field that is a number of at least 0, with its name.
-    pub(super) fn exponents(&self) -> [(&'static str, f64); 6] {
+    pub(super) fn exponents(&self) -> [(&'static str, f64); 8] {
         [
             ("range_exponent", self.range_exponent),
             ("depth_exponent", self.depth_exponent),
@@ -103,6 +118,8 @@ impl Cues {
             ("violation_exponent", self.violation_exponent),
             ("far_exponent", self.far_exponent),
             ("parallax_exponent", self.parallax_exponent),
+            ("coarseness_exponent", self.coarseness_exponent),
+            ("hidden_exponent", self.hidden_exponent),
         ]
     }
 }

@@ -4,9 +4,9 @@
 //! zero where u's component has too few points; θ(v) = (1 + β) λ, plus the cost of violating rays.
 
 use super::config::{OutlierConfig, Reading};
+use super::passing_rays::passing_rays;
 use super::problem::{Problem, Score};
 use super::sight::Sight;
-use super::violations::violations;
 use crate::disjoint_sets::DisjointSets;
 use crate::neighbours::{NeighbourGraph, RangeTree};
 use crate::points::{Cloud, median};
@@ -45,9 +45,10 @@ pub(super) fn problem(
     let score = settings.score(&graph, config.reading);
     let mut threshold = vec![settings.threshold; n];
     if let Some(sight) = sight.filter(|_| config.reading == Reading::Rays) {
-        let rays = violations(cloud, sight, &config.rays);
-        for (threshold, count) in threshold.iter_mut().zip(rays) {
-            *threshold += config.rays.violation_cost * f64::from(count.min(MOST_VIOLATIONS));
+        let rays = passing_rays(cloud, sight, &config.rays, false);
+        for (threshold, rays) in threshold.iter_mut().zip(rays) {
+            let count = rays.violating.min(MOST_VIOLATIONS);
+            *threshold += config.rays.violation_cost * f64::from(count);
         }
     }
     Some(Problem {

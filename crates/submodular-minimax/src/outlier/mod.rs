@@ -12,12 +12,12 @@ mod depth_agreement;
 mod error;
 mod kernel_reading;
 mod origin;
+mod passing_rays;
 mod problem;
 mod ranged_reading;
 mod removal;
 mod sight;
 mod solve;
-mod violations;
 
 pub use config::{OutlierConfig, RayConfig, Reading, Solver};
 pub use cues::{Cues, DepthSource, Tolerance};

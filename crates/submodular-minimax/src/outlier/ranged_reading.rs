@@ -7,13 +7,15 @@
 //! cue(v)     = Π of what the observations say, each to its power
 //! θ(v)       = 1 / (1 + T σ / (cue(v) unit)), σ = median over v of cue(v) min over u of D(u) + d(u, v)
 //!
-//!              e    wide + 0.02   near + 0.02   1 + violations   r / median r   parallax + 0.005   T
-//! triangulated 1    1             0             0.2              0              0                  8
-//! measured     0.8  0             0.2           0.2              0.2            0.3                5.5
-//! one position 0.8  0.25          0.15          0.1              0              0                  exp(0.08 / q)
+//!              e    wide   near   1 + violations   r / median r   parallax   coarseness   1 + hiding   T
+//! triangulated 1    1      0      0.2              0              0          0            0            8
+//! measured     0.8  0      0.2    0.2              0.1            0.3        0.5          0.1          exp(2 s^0.7)
+//! one position 0.8  0.25   0.15   0.1              0              0          0            0            exp(0.08 / q)
 //! ```
 //!
-//! Wide and near are disagreements in depth with image neighbours, q the near one that one point in ten exceeds.
+//! Wide and near are disagreements in depth with image neighbours, plus 0.02, q the near one that one point in ten
+//! exceeds; parallax has 0.005 added; coarseness is the largest distance from which the point's feature can be
+//! recognised, over r; s is ln(ninth decile / median) of cue(v) min over u of D(u) + d(u, v).
 //! So v stays if some other point in a dense neighbourhood is near, as seen from where it was seen; a
 //! point that disagrees with its image neighbours' depth or stands in free space must be nearer. Any
 //! s ≥ 0 and any λ ≥ 0 are legal, hence so are these. Which row holds, the observations tell: see
@@ -22,9 +24,9 @@
 use super::config::{OutlierConfig, RayConfig};
 use super::cues::{Cues, DepthSource, Tolerance, told};
 use super::depth_agreement::DepthDisagreement;
+use super::passing_rays::passing_rays;
 use super::problem::{Problem, Score};
 use super::sight::Sight;
-use super::violations::violations;
 use crate::neighbours::{NeighbourGraph, RangeTree};
 use crate::points::{Cloud, median};
 
@@ -56,7 +58,7 @@ pub(super) fn problem(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) 
     sight_cues(cloud, sight, &ranges, (weights, &config.rays), &mut cues);
     let unit = median(&mut badness.clone());
     let mut judged: Vec<f64> = badness.iter().zip(&cues).map(|(b, c)| b * c).collect();
-    let allowed = tolerance(weights, &depth) * median(&mut judged);
+    let allowed = tolerance(weights, &depth, &mut judged) * median(&mut judged);
     if !(unit > 0.0 && allowed > 0.0) {
         return None;
     }
@@ -139,18 +141,49 @@ fn sight_cues(
             *cue *= (parallax + PARALLAX_FLOOR).powf(weights.parallax_exponent);
         }
     }
-    if weights.violation_exponent > 0.0 {
-        let counts = violations(cloud, sight, rays);
-        for (cue, count) in cues.iter_mut().zip(counts) {
-            *cue *= (1.0 + f64::from(count)).powf(weights.violation_exponent);
+    if weights.coarseness_exponent > 0.0 {
+        for (cue, coarseness) in cues.iter_mut().zip(coarseness(cloud, sight, ranges)) {
+            *cue *= coarseness.powf(weights.coarseness_exponent);
+        }
+    }
+    let (violating, hiding) = (weights.violation_exponent, weights.hidden_exponent);
+    if violating > 0.0 || hiding > 0.0 {
+        let rays = passing_rays(cloud, sight, rays, hiding > 0.0);
+        for (cue, rays) in cues.iter_mut().zip(rays) {
+            *cue *= (1.0 + f64::from(rays.violating)).powf(violating);
+            *cue *= (1.0 + f64::from(rays.hiding)).powf(hiding);
         }
     }
 }
 
+/// The largest distance from which each feature can be recognised, in ranges; the median where unknown, 1 if all are.
+fn coarseness(cloud: &Cloud, sight: &Sight<'_>, ranges: &[f64]) -> Vec<f64> {
+    let times = |v: usize| {
+        let distance = sight.views.max_distance(v)? / cloud.unit;
+        Some((distance / ranges[v]).clamp(1.0 / MOST_COARSE, MOST_COARSE))
+    };
+    let all: Vec<Option<f64>> = (0..cloud.len()).map(times).collect();
+    let mut known: Vec<f64> = all.iter().copied().flatten().collect();
+    let typical = if known.is_empty() {
+        1.0
+    } else {
+        median(&mut known)
+    };
+    all.into_iter().map(|c| c.unwrap_or(typical)).collect()
+}
+
 /// How many times the median badness is kept.
-fn tolerance(weights: &Cues, depth: &DepthDisagreement) -> f64 {
+fn tolerance(weights: &Cues, depth: &DepthDisagreement, judged: &mut [f64]) -> f64 {
     match (weights.tolerance, depth.dirt) {
         (Tolerance::Fixed(times), _) => times,
+        (Tolerance::BySpread(times), _) => {
+            let typical = median(judged);
+            let at = judged.len() * 9 / 10;
+            let high = *judged.select_nth_unstable_by(at, f64::total_cmp).1;
+            let (least, most) = LOG_SPREAD_TOLERANCE;
+            let spread = (high / typical).ln().powf(SPREAD_EXPONENT);
+            (times * spread).clamp(least, most).exp()
+        }
         (Tolerance::ByDirt, None) => LOG_TOLERANCE.1.exp(),
         (Tolerance::ByDirt, Some(dirt)) => {
             let (least, _, most) = LOG_TOLERANCE;
@@ -161,10 +194,16 @@ fn tolerance(weights: &Cues, depth: &DepthDisagreement) -> f64 {
 
 /// The least log tolerance, that without any camera that can tell, the largest.
 const LOG_TOLERANCE: (f64, f64, f64) = (0.9, 1.3, 2.2);
+/// The spread is shrunk towards the usual one, which is a little below 1.
+const SPREAD_EXPONENT: f64 = 0.7;
+/// The least and the largest log tolerance that the spread can lead to.
+const LOG_SPREAD_TOLERANCE: (f64, f64) = (1.0, 3.0);
 /// The log tolerance times the near disagreement that one point in ten exceeds.
 const TOLERATED_DIRT: f64 = 0.08;
 /// Disagreements below this log ratio (2 %) are noise.
 const DEPTH_FLOOR: f64 = 0.02;
+/// Features are at most this many times as coarse, or as fine, as their range.
+const MOST_COARSE: f64 = 1e6;
 /// Parallax below this many radians is noise.
 const PARALLAX_FLOOR: f64 = 0.005;
 /// Ranges count as at least this part of the median range.

@@ -49,7 +49,7 @@ pub fn real_maps() -> Vec<Labelled> {
 /// The synthetic apartment with its truth, if the data folder is there.
 pub fn apartment_of_the_data_folder() -> Option<Labelled> {
     let folder = data_folder()?.join("synthetic-apartment");
-    let (points, _) = read_ply(&folder.join("apt_10k_o15.ply"))?;
+    let points = read_ply(&folder.join("apt_10k_o15.ply"))?.points;
     let labels = std::fs::read(folder.join("apt_10k_o15.labels.npy")).ok()?;
     let body = &labels[labels.len() - points.len()..];
     let outlier = body.iter().map(|&label| Some(label > 0)).collect();
@@ -63,7 +63,8 @@ pub fn apartment_of_the_data_folder() -> Option<Labelled> {
 
 /// Reads one map folder.
 pub fn read_map(folder: &Path) -> Labelled {
-    let (points, ids) = read_ply(&folder.join("map.ply")).unwrap();
+    let vertices = read_ply(&folder.join("map.ply")).unwrap();
+    let ids = &vertices.ids;
     let keyframes = rows(&std::fs::read_to_string(folder.join("keyframes.csv")).unwrap());
     let camera: HashMap<usize, usize> = keyframes
         .iter()
@@ -101,11 +102,12 @@ pub fn read_map(folder: &Path) -> Labelled {
         .iter()
         .map(|id| error.get(id).map(|e| e.abs() > 0.2))
         .collect();
+    let views = Views::new(cameras, observers).unwrap();
     let name = folder.file_name().unwrap().to_string_lossy().into_owned();
     Labelled {
         name,
-        points,
-        views: Some(Views::new(cameras, observers).unwrap()),
+        points: vertices.points,
+        views: Some(views.with_max_distances(vertices.max_distances).unwrap()),
         outlier,
     }
 }
@@ -119,7 +121,15 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
     text.lines().skip(1).map(row).collect()
 }
 
-fn read_ply(path: &Path) -> Option<(Vec<[f64; 3]>, Vec<usize>)> {
+/// What a PLY file tells of its points.
+#[derive(Default)]
+struct Vertices {
+    points: Vec<[f64; 3]>,
+    ids: Vec<usize>,
+    max_distances: Vec<Option<f64>>,
+}
+
+fn read_ply(path: &Path) -> Option<Vertices> {
     let bytes = std::fs::read(path).ok()?;
     let end = bytes.windows(11).position(|w| w == b"end_header\n")? + 11;
     let header = String::from_utf8_lossy(&bytes[..end]).into_owned();
@@ -127,7 +137,8 @@ fn read_ply(path: &Path) -> Option<(Vec<[f64; 3]>, Vec<usize>)> {
         .filter(|line| line.starts_with("property"))
         .filter_map(|line| line.split(' ').next_back())
         .collect();
-    let id = properties.iter().position(|name| *name == "id");
+    let column = |name: &str| properties.iter().position(|property| *property == name);
+    let (id, reach) = (column("id"), column("max_distance"));
     if header.contains("binary_little_endian") {
         let float = |at: &[u8]| f64::from(f32::from_le_bytes([at[0], at[1], at[2], at[3]]));
         let size: usize = (header.lines())
@@ -142,21 +153,25 @@ fn read_ply(path: &Path) -> Option<(Vec<[f64; 3]>, Vec<usize>)> {
         let points = points
             .map(|p| [float(p), float(&p[4..]), float(&p[8..])])
             .collect();
-        return Some((points, Vec::new()));
+        return Some(Vertices {
+            points,
+            ..Vertices::default()
+        });
     }
-    let mut points = Vec::new();
-    let mut ids = Vec::new();
+    let mut vertices = Vertices::default();
     for line in String::from_utf8_lossy(&bytes[end..]).lines() {
         let values: Vec<f64> = line
             .split_whitespace()
             .filter_map(|x| x.parse().ok())
             .collect();
         if values.len() >= 3 {
-            points.push([values[0], values[1], values[2]]);
-            ids.push(id.map_or(0, |at| values[at] as usize));
+            let reach = reach.map(|at| values[at]).filter(|&reach| reach > 0.0);
+            vertices.points.push([values[0], values[1], values[2]]);
+            vertices.ids.push(id.map_or(0, |at| values[at] as usize));
+            vertices.max_distances.push(reach);
         }
     }
-    Some((points, ids))
+    Some(vertices)
 }
 
 /// F1 of the removed set among the labelled points.

@@ -161,7 +161,9 @@ impl LoadedMap {
         let observers = observers
             .map(|point| point.observers.iter().filter_map(place).collect())
             .collect();
+        let reach = self.map.points.iter().map(|point| point.max_distance);
         Views::new(centers, observers)
+            .and_then(|views| views.with_max_distances(reach.collect()))
             .map(Some)
             .map_err(|error| Failure::new(error, "correct keyframes.csv and observations.csv"))
     }

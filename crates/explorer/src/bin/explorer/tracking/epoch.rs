@@ -45,6 +45,9 @@ impl Epoch {
             if let Some(direction) = &mut point.viewing_direction {
                 *direction = world.isometry.rotation * *direction;
             }
+            if let Some(distance) = &mut point.max_distance {
+                *distance *= world.scaling();
+            }
         }
         self.map.scale = Scale::MetersPerUnit(1.0);
     }

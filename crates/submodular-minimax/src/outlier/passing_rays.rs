@@ -1,7 +1,8 @@
-//! Free-space violations: how many rays pass through a point and end well behind it?
+//! Rays that pass a point: how many end well behind it, and how many well before it?
 //!
-//! A ray from camera c to a point q that c sees proves the space before q free. A point v that c does
-//! not see, within `angle` of the ray and with |cq| > margin |cv|, stands in that space.
+//! A ray from camera c to a point q that c sees proves the space before q free, and hides what is behind. A point v
+//! that c does not see, within `angle` of the ray, stands in free space with |cq| > margin |cv|: a violation. With
+//! |cv| > margin |cq| it is hidden.
 //! Cost: a few nanoseconds for each tested camera and point that is not in its picture, the rays in
 //! nine cells of a grid for each that is; the cameras are capped.
 
@@ -9,23 +10,36 @@ use super::config::RayConfig;
 use super::sight::Sight;
 use crate::points::{Cloud, squared_distance};
 
-/// The number of violating rays of every point.
-pub(super) fn violations(cloud: &Cloud, sight: &Sight<'_>, config: &RayConfig) -> Vec<u32> {
-    let mut count = vec![0; cloud.len()];
+/// What the rays of cameras that do not see a point say of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct PassingRays {
+    /// Rays that end well behind it.
+    pub(super) violating: u32,
+    /// Rays that end well before it; 0 if they were not asked for.
+    pub(super) hiding: u32,
+}
+
+/// The rays that pass each point. Not to ask for those that hide it costs less.
+pub(super) fn passing_rays(
+    cloud: &Cloud,
+    sight: &Sight<'_>,
+    config: &RayConfig,
+    hiding: bool,
+) -> Vec<PassingRays> {
+    let mut passing = vec![PassingRays::default(); cloud.len()];
     let cameras = sight.cameras.len();
     let used = cameras.min(config.max_cameras);
     for camera in (0..used).map(|i| i * cameras / used) {
-        count_for_camera(cloud, sight, camera, config, &mut count);
+        count_for_camera((cloud, sight, config), camera, hiding, &mut passing);
     }
-    count
+    passing
 }
 
 fn count_for_camera(
-    cloud: &Cloud,
-    sight: &Sight<'_>,
+    (cloud, sight, config): (&Cloud, &Sight<'_>, &RayConfig),
     camera: usize,
-    config: &RayConfig,
-    count: &mut [u32],
+    hiding: bool,
+    passing: &mut [PassingRays],
 ) {
     let seen = &sight.seen[camera];
     let ray = |&q: &u32| {
@@ -36,15 +50,24 @@ fn count_for_camera(
     let chord = 2.0 * (config.angle / 2.0).sin();
     let picture = Picture::new(&rays, chord);
     let mut sees = seen.iter().peekable();
-    for (v, count) in count.iter_mut().enumerate() {
+    for (v, passing) in passing.iter_mut().enumerate() {
         if sees.next_if(|&&q| q as usize == v).is_some() {
             continue;
         }
         let (direction, range) = sight.bearing(cloud, camera, v);
         let enough = config.margin * range;
-        for ray in picture.longer_around(direction, enough).flatten() {
-            let near = squared_distance(direction, ray.direction) <= chord * chord;
-            *count += u32::from(near && ray.length > enough);
+        let hides = |length: f64| hiding && range > config.margin * length;
+        let Some(cell) = picture.cell(direction) else {
+            continue;
+        };
+        if picture.longest[cell] <= enough && !hides(picture.shortest[cell]) {
+            continue;
+        }
+        for ray in picture.around(cell).flatten() {
+            if squared_distance(direction, ray.direction) <= chord * chord {
+                passing.violating += u32::from(ray.length > enough);
+                passing.hiding += u32::from(hides(ray.length));
+            }
         }
     }
 }
@@ -70,6 +93,8 @@ struct Picture {
     start: Vec<usize>,
     /// The length of the longest ray in each cell and those around it.
     longest: Vec<f64>,
+    /// That of the shortest.
+    shortest: Vec<f64>,
     rays: Vec<Ray>,
 }
 
@@ -92,8 +117,9 @@ impl Picture {
         picture.rays = order.into_iter().map(|i| rays[i]).collect();
         for (&cell, ray) in cells.iter().zip(rays) {
             for row in [cell - picture.size[0], cell, cell + picture.size[0]] {
-                for longest in &mut picture.longest[row - 1..row + 2] {
-                    *longest = longest.max(ray.length);
+                for near in row - 1..row + 2 {
+                    picture.longest[near] = picture.longest[near].max(ray.length);
+                    picture.shortest[near] = picture.shortest[near].min(ray.length);
                 }
             }
         }
@@ -123,6 +149,7 @@ impl Picture {
             size,
             start: vec![0; cells + 1],
             longest: vec![0.0; cells],
+            shortest: vec![f64::INFINITY; cells],
             rays: Vec::new(),
         }
     }
@@ -138,17 +165,12 @@ impl Picture {
             .then_some(row * self.size[0] + column)
     }
 
-    /// The rays around a direction, a row of cells at a time; none if all are at most that long.
+    /// The rays in a cell and those around it, a row of cells at a time.
     #[inline]
-    fn longer_around(&self, direction: [f64; 3], length: f64) -> impl Iterator<Item = &[Ray]> {
-        let cell = self
-            .cell(direction)
-            .filter(|&cell| self.longest[cell] > length);
-        cell.into_iter().flat_map(move |cell| {
-            let rows = [cell - self.size[0], cell, cell + self.size[0]];
-            let around = |row: usize| &self.rays[self.start[row - 1]..self.start[row + 2]];
-            rows.into_iter().map(around)
-        })
+    fn around(&self, cell: usize) -> impl Iterator<Item = &[Ray]> {
+        let rows = [cell - self.size[0], cell, cell + self.size[0]];
+        rows.into_iter()
+            .map(|row| &self.rays[self.start[row - 1]..self.start[row + 2]])
     }
 }
 
@@ -184,20 +206,27 @@ mod tests {
     use proptest::prelude::*;
 
     /// The definition, ray by ray.
-    fn by_definition(cloud: &Cloud, sight: &Sight<'_>, config: &RayConfig) -> Vec<u32> {
+    fn by_definition(
+        cloud: &Cloud,
+        sight: &Sight<'_>,
+        config: &RayConfig,
+        hiding: bool,
+    ) -> Vec<PassingRays> {
         let chord = 2.0 * (config.angle / 2.0).sin();
-        let mut count = vec![0; cloud.len()];
+        let mut passing = vec![PassingRays::default(); cloud.len()];
         for (camera, seen) in sight.seen.iter().enumerate() {
             for v in (0..cloud.len()).filter(|&v| !seen.contains(&(v as u32))) {
                 let (direction, range) = sight.bearing(cloud, camera, v);
                 for &q in seen {
                     let (ray, length) = sight.bearing(cloud, camera, q as usize);
                     let near = squared_distance(direction, ray) <= chord * chord;
-                    count[v] += u32::from(near && length > config.margin * range);
+                    let before = near && range > config.margin * length;
+                    passing[v].violating += u32::from(near && length > config.margin * range);
+                    passing[v].hiding += u32::from(hiding && before);
                 }
             }
         }
-        count
+        passing
     }
 
     proptest! {
@@ -205,7 +234,7 @@ mod tests {
         fn counts_equal_the_definition(
             points in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..120),
             cameras in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..4),
-            (flat, at_camera) in any::<(bool, bool)>(),
+            (flat, at_camera, hiding) in any::<(bool, bool, bool)>(),
             angle in prop::sample::select(vec![1e-4, 0.01, 0.05, 0.3, 0.99]),
             seen in prop::collection::vec(0..6usize, 120),
         ) {
@@ -221,7 +250,8 @@ mod tests {
             let cloud = Cloud::new(&points).ok().unwrap();
             let config = RayConfig { angle, margin: 1.1, ..RayConfig::default() };
             if let Some(sight) = Sight::new(&cloud, &views).unwrap() {
-                prop_assert_eq!(violations(&cloud, &sight, &config), by_definition(&cloud, &sight, &config));
+                let found = passing_rays(&cloud, &sight, &config, hiding);
+                prop_assert_eq!(found, by_definition(&cloud, &sight, &config, hiding));
             }
         }
     }
