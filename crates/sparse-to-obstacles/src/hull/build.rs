@@ -11,7 +11,7 @@ const RANK_TOLERANCE: f64 = 1e-3;
 /// The hull of the points with these indices, which must not be empty; all points are finite.
 pub(crate) fn build(points: &[Vec3], point_indices: Vec<usize>) -> Hull {
     let mut own: Vec<Vec3> = point_indices.iter().map(|&index| points[index]).collect();
-    own.sort_by(|a, b| {
+    own.sort_unstable_by(|a, b| {
         a[0].total_cmp(&b[0])
             .then(a[1].total_cmp(&b[1]))
             .then(a[2].total_cmp(&b[2]))

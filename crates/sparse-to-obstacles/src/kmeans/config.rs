@@ -53,7 +53,7 @@ pub enum KMeansMethod {
     /// Every point against every centroid (Lloyd 1982): the reference.
     Lloyd,
     /// The same result, bit for bit: points whose distance bounds prove that their centroid cannot
-    /// change are skipped (Hamerly 2010), the others search a k-d tree of the centroids.
+    /// change are skipped (Hamerly 2010), the others search the neighbours of their centroid.
     Accelerated,
     /// Random batches with a learning rate per centroid (Sculley 2010), then one exact pass. Cheaper
     /// for very many points, of a larger inertia.

@@ -2,6 +2,7 @@
 
 use super::accelerated::Accelerated;
 use super::lloyd::Lloyd;
+use super::plus_plus::Seeds;
 use super::{
     Clustering, KMeansConfig, KMeansMethod, KMeansStop, inertia, mini_batch, repair, swap,
 };
@@ -10,6 +11,7 @@ use rand::Rng;
 
 /// One way to find the nearest centroid of every point, ties to the lowest index.
 pub(super) trait Assignment {
+    /// `labels` come in as those of before, or as any guess.
     fn assign(&mut self, points: &[Vec3], centroids: &[Vec3], labels: &mut [usize]);
     /// The centroids moved since the last assignment.
     fn moved(&mut self, before: &[Vec3], after: &[Vec3]);
@@ -19,21 +21,26 @@ pub(super) trait Assignment {
 
 pub(super) fn run(
     points: &[Vec3],
-    seeds: Vec<Vec3>,
+    seeds: Seeds,
     config: &KMeansConfig,
     rng: &mut impl Rng,
 ) -> Clustering {
-    let exact = |centroids: Vec<Vec3>| match config.method {
-        KMeansMethod::Lloyd => refine(points, centroids, config, Lloyd),
-        _ => refine(points, centroids, config, Accelerated::new(points.len())),
+    let exact = |from: Seeds| match config.method {
+        KMeansMethod::Lloyd => refine(points, from, config, Lloyd),
+        _ => refine(points, from, config, Accelerated::new(points.len())),
     };
     if let KMeansMethod::MiniBatch { batch } = config.method {
-        let (centroids, batches, stop) = mini_batch::run(points, seeds, batch, config, rng);
+        let (centroids, batches, stop) =
+            mini_batch::run(points, seeds.centroids, batch, config, rng);
+        let from = Seeds {
+            centroids,
+            labels: seeds.labels,
+        };
         let once = KMeansConfig {
             max_iterations: 1,
             ..config.clone()
         };
-        let last = refine(points, centroids, &once, Accelerated::new(points.len()));
+        let last = refine(points, from, &once, Accelerated::new(points.len()));
         return Clustering {
             iterations: batches,
             stop,
@@ -45,12 +52,15 @@ pub(super) fn run(
 
 fn refine(
     points: &[Vec3],
-    mut centroids: Vec<Vec3>,
+    from: Seeds,
     config: &KMeansConfig,
     mut assignment: impl Assignment,
 ) -> Clustering {
+    let Seeds {
+        mut centroids,
+        mut labels,
+    } = from;
     let limit = config.tolerance * variance(points);
-    let mut labels = vec![0; points.len()];
     let mut former = Vec::new();
     let mut stop = KMeansStop::MaxIterations;
     let mut iterations = 0;

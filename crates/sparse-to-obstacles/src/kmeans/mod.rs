@@ -6,6 +6,7 @@ mod error;
 mod iterate;
 mod lloyd;
 mod mini_batch;
+mod neighbours;
 mod plus_plus;
 mod repair;
 mod scalable;
@@ -64,7 +65,7 @@ pub enum KMeansStop {
 /// The result depends on the points, the configuration and the state of `rng` alone, never on threads.
 ///
 /// Duplicates are kept and share a label. Where there are fewer distinct points than clusters, each
-/// distinct point becomes one cluster. Cost per iteration: O(n K) for Lloyd, about O(n log K) for the
+/// distinct point becomes one cluster. Cost per iteration: O(n K) for Lloyd, about O(n + K log K) for the
 /// accelerated method; memory O(n + K).
 ///
 /// # Errors

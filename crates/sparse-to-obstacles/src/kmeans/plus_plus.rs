@@ -11,6 +11,14 @@
 use crate::vector::{Vec3, distance_squared};
 use rand::{Rng, RngExt};
 
+/// Where the iteration begins.
+#[derive(Clone, Debug)]
+pub(super) struct Seeds {
+    pub(super) centroids: Vec<Vec3>,
+    /// For each point a centroid that is near: where the search for the nearest one begins.
+    pub(super) labels: Vec<usize>,
+}
+
 /// Draws seeds among `points` until there are `count` with the `known` ones, or until every point
 /// coincides with a seed.
 pub(super) fn seed(
@@ -19,7 +27,7 @@ pub(super) fn seed(
     count: usize,
     trials: Option<usize>,
     rng: &mut impl Rng,
-) -> Vec<Vec3> {
+) -> Seeds {
     seed_weighted(points, None, known, count, trials, rng)
 }
 
@@ -31,7 +39,7 @@ pub(super) fn seed_weighted(
     count: usize,
     trials: Option<usize>,
     rng: &mut impl Rng,
-) -> Vec<Vec3> {
+) -> Seeds {
     let trials = trials.unwrap_or(2 + (count as f64).ln() as usize);
     let mut seeding = Seeding::new(points, weights, known, rng);
     while seeding.seeds.len() < count {
@@ -40,7 +48,16 @@ pub(super) fn seed_weighted(
         };
         seeding.add(points[best]);
     }
-    seeding.seeds
+    let mut labels = vec![0; points.len()];
+    for (seed, members) in seeding.members.iter().enumerate() {
+        for &point in members {
+            labels[point as usize] = seed;
+        }
+    }
+    Seeds {
+        centroids: seeding.seeds,
+        labels,
+    }
 }
 
 struct Seeding<'a> {

@@ -2,7 +2,7 @@
 //!
 //! References: Bahmani, Moseley, Vattani, Kumar and Vassilvitskii, "Scalable k-means++", VLDB 2012.
 
-use super::plus_plus;
+use super::plus_plus::{self, Seeds};
 use super::tree::CentroidTree;
 use crate::vector::{Vec3, distance_squared};
 use rand::{Rng, RngExt};
@@ -14,18 +14,28 @@ pub(super) fn seed(
     rounds: usize,
     oversampling: f64,
     rng: &mut impl Rng,
-) -> Vec<Vec3> {
+) -> Seeds {
     let candidates = candidates(points, rounds, oversampling * count as f64, rng);
     let tree = CentroidTree::new(&candidates);
+    let nearest: Vec<usize> = points
+        .iter()
+        .map(|&point| tree.nearest_two(point).index)
+        .collect();
     let mut weights = vec![0.0; candidates.len()];
-    for &point in points {
-        weights[tree.nearest_two(point).index] += 1.0;
+    for &candidate in &nearest {
+        weights[candidate] += 1.0;
     }
     let seeds = plus_plus::seed_weighted(&candidates, Some(&weights), &[], count, None, rng);
-    if seeds.len() < count {
-        return plus_plus::seed(points, &seeds, count, None, rng);
+    if seeds.centroids.len() < count {
+        return plus_plus::seed(points, &seeds.centroids, count, None, rng);
     }
-    seeds
+    Seeds {
+        labels: nearest
+            .iter()
+            .map(|&candidate| seeds.labels[candidate])
+            .collect(),
+        ..seeds
+    }
 }
 
 fn candidates(points: &[Vec3], rounds: usize, per_round: f64, rng: &mut impl Rng) -> Vec<Vec3> {

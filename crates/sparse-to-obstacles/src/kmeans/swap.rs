@@ -9,6 +9,8 @@
 //! adding at once.
 
 use super::Clustering;
+use super::neighbours::Neighbours;
+use super::plus_plus::Seeds;
 use super::tree::CentroidTree;
 use crate::vector::{Vec3, distance_squared};
 
@@ -20,14 +22,17 @@ pub(super) fn improve(
     points: &[Vec3],
     mut best: Clustering,
     rounds: usize,
-    mut improve: impl FnMut(Vec<Vec3>) -> Clustering,
+    mut improve: impl FnMut(Seeds) -> Clustering,
 ) -> Clustering {
     let mut moving = best.centroids.len().div_ceil(SHARE);
     for _ in 0..rounds {
         let Some(centroids) = swapped(points, &best, moving) else {
             break;
         };
-        let candidate = improve(centroids);
+        let candidate = improve(Seeds {
+            centroids,
+            labels: best.labels.clone(),
+        });
         let iterations = best.iterations + candidate.iterations;
         if candidate.inertia < best.inertia {
             best = candidate;
@@ -72,6 +77,7 @@ struct Needs {
 impl Needs {
     fn of(points: &[Vec3], clustering: &Clustering) -> Self {
         let tree = CentroidTree::new(&clustering.centroids);
+        let neighbours = Neighbours::new(&clustering.centroids, &tree);
         let count = clustering.centroids.len();
         let mut needs = Needs {
             price: vec![0.0; count],
@@ -81,8 +87,9 @@ impl Needs {
         let mut widest = vec![f64::NEG_INFINITY; count];
         for (index, (&point, &label)) in points.iter().zip(&clustering.labels).enumerate() {
             let squared = distance_squared(point, clustering.centroids[label]);
-            let second = tree.nearest_two(point).second_squared;
-            needs.price[label] += (second - squared).max(0.0);
+            let near = neighbours.nearest_two(&clustering.centroids, point, label);
+            let two = near.unwrap_or_else(|| tree.nearest_two(point));
+            needs.price[label] += (two.second_squared - squared).max(0.0);
             needs.inertia[label] += squared;
             if squared > widest[label] {
                 widest[label] = squared;

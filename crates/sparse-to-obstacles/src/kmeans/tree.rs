@@ -90,6 +90,55 @@ impl CentroidTree {
         best
     }
 
+    /// The `count` centroids nearest to a point with their squared distances, ascending, without the one with index `own`.
+    pub(super) fn nearest_others(&self, point: Vec3, own: usize, count: usize) -> Vec<(f64, u32)> {
+        let mut nearest = Vec::with_capacity(count + 1);
+        self.gather(0, point, own as u32, count, &mut nearest);
+        nearest
+    }
+
+    fn gather(
+        &self,
+        node: usize,
+        point: Vec3,
+        own: u32,
+        count: usize,
+        nearest: &mut Vec<(f64, u32)>,
+    ) {
+        let limit = |nearest: &[(f64, u32)]| match nearest.get(count - 1) {
+            Some(last) => last.0,
+            None => f64::INFINITY,
+        };
+        match self.nodes[node] {
+            Node::Leaf { start, end } => {
+                for &(centroid, index) in &self.entries[start as usize..end as usize] {
+                    let squared = distance_squared(point, centroid);
+                    if index == own || squared >= limit(nearest) {
+                        continue;
+                    }
+                    let at = nearest
+                        .iter()
+                        .rposition(|entry| entry.0 <= squared)
+                        .map_or(0, |at| at + 1);
+                    nearest.insert(at, (squared, index));
+                    nearest.truncate(count);
+                }
+            }
+            Node::Split { axis, at, right } => {
+                let offset = point[axis] - at;
+                let (near, far) = if offset < 0.0 {
+                    (node + 1, right as usize)
+                } else {
+                    (right as usize, node + 1)
+                };
+                self.gather(near, point, own, count, nearest);
+                if offset * offset < limit(nearest) {
+                    self.gather(far, point, own, count, nearest);
+                }
+            }
+        }
+    }
+
     fn visit(&self, node: usize, point: Vec3, best: &mut NearestTwo) {
         match self.nodes[node] {
             Node::Leaf { start, end } => {
