@@ -170,7 +170,10 @@ fn cleaned(mut scans: Vec<Scan>, cleaning: Cleaning) -> Outcome<Vec<Scan>> {
     let mut config = OutlierConfig::default();
     match cleaning.knowing {
         NotCleaned => return Ok(scans),
-        Position(exponent) => config.rays.one_position.range_exponent = exponent,
+        Position(exponent) => {
+            config.rays.one_position = Cues::one_position();
+            config.rays.one_position.range_exponent = exponent;
+        }
         Observations => {}
         Milder(exponent) => {
             config.rays.triangulated = Cues::one_position();

@@ -26,7 +26,7 @@ use exit_finder::{
 use generator::{Kind, Scan, corrupted, scan};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use submodular_minimax::{OutlierConfig, Views, remove_outliers};
+use submodular_minimax::{Cues, OutlierConfig, Views, remove_outliers};
 
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -108,6 +108,7 @@ fn views(scan: &Scan) -> Outcome<Vec<(Opening, bool)>> {
 fn cleaned(scan: &Scan) -> Outcome<[Vec<[f64; 3]>; 2]> {
     let views = Views::from_position(scan.agent, scan.points.len())?;
     let mut config = OutlierConfig::default();
+    config.rays.one_position = Cues::one_position();
     config.rays.one_position.range_exponent = 1.4;
     let cleaning = remove_outliers(&scan.points, Some(&views), &config)?;
     let points = |indices: Vec<usize>| {

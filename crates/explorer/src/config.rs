@@ -277,6 +277,7 @@ impl MissionConfig {
 fn cleaning() -> OutlierConfig {
     let mut clean = OutlierConfig::default();
     clean.rays.triangulated = Cues::one_position();
+    clean.rays.one_position = Cues::one_position();
     clean
 }
 

@@ -57,7 +57,7 @@ pub struct RayConfig {
     pub triangulated: Cues,
     /// Weights where depths were measured; [`Cues::measured`].
     pub measured: Cues,
-    /// Weights where all points were seen from one position; [`Cues::one_position`].
+    /// Weights where all points were seen from one position; [`Cues::from_position`].
     pub one_position: Cues,
 }
 
@@ -101,7 +101,7 @@ impl Default for RayConfig {
             source: DepthSource::Told,
             triangulated: Cues::triangulated(),
             measured: Cues::measured(),
-            one_position: Cues::one_position(),
+            one_position: Cues::from_position(),
         }
     }
 }
@@ -253,8 +253,9 @@ impl Cues {
             not_negative(field, value)?;
         }
         match self.tolerance {
-            Tolerance::Fixed(times) | Tolerance::BySpread(times) => positive("tolerance", times),
-            Tolerance::ByDirt => Ok(()),
+            Tolerance::Fixed(times)
+            | Tolerance::BySpread(times)
+            | Tolerance::ByDirt { least: times } => positive("tolerance", times),
         }
     }
 }

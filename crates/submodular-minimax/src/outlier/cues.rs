@@ -56,12 +56,25 @@ pub enum Tolerance {
     /// e and e³ times. Maps whose good points differ more are cut later, if not quite by as much.
     BySpread(f64),
     /// As the map's own dirt tells: exp(0.08 / q), where q is the disagreement in depth with the
-    /// nearest image neighbours that one point in ten exceeds; between 2.5 and 9 times.
-    ByDirt,
+    /// nearest image neighbours that one point in ten exceeds; at least this many times, above 0, and at most 9 times.
+    ByDirt {
+        /// The least.
+        least: f64,
+    },
 }
 
 impl Cues {
-    /// Where all that is known is one position: 0.8, 0.25, 0.15, 0.1, 0, 0, 0, 0, as the dirt tells.
+    /// The default where all that is known is one position: [`Cues::one_position`], but at least 3.3 times.
+    #[must_use]
+    pub fn from_position() -> Self {
+        Self {
+            tolerance: Tolerance::ByDirt { least: 3.3 },
+            ..Self::one_position()
+        }
+    }
+
+    /// Where all that is known is one position and little may be left that is wrong: 0.8, 0.25, 0.15, 0.1, 0, 0, 0, 0, as the
+    /// dirt tells and at least 2.46 times.
     #[must_use]
     pub fn one_position() -> Self {
         Self {
@@ -73,7 +86,7 @@ impl Cues {
             parallax_exponent: 0.0,
             coarseness_exponent: 0.0,
             hidden_exponent: 0.0,
-            tolerance: Tolerance::ByDirt,
+            tolerance: Tolerance::ByDirt { least: 2.46 },
         }
     }
 

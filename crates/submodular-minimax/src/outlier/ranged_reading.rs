@@ -184,16 +184,16 @@ fn tolerance(weights: &Cues, depth: &DepthDisagreement, judged: &mut [f64]) -> f
             let spread = (high / typical).ln().powf(SPREAD_EXPONENT);
             (times * spread).clamp(least, most).exp()
         }
-        (Tolerance::ByDirt, None) => LOG_TOLERANCE.1.exp(),
-        (Tolerance::ByDirt, Some(dirt)) => {
-            let (least, _, most) = LOG_TOLERANCE;
-            (TOLERATED_DIRT / dirt).clamp(least, most).exp()
+        (Tolerance::ByDirt { least }, dirt) => {
+            let (untold, most) = LOG_TOLERANCE;
+            let told = dirt.map_or(untold, |dirt| TOLERATED_DIRT / dirt);
+            told.min(most).exp().max(least)
         }
     }
 }
 
-/// The least log tolerance, that without any camera that can tell, the largest.
-const LOG_TOLERANCE: (f64, f64, f64) = (0.9, 1.3, 2.2);
+/// The log tolerance without any camera that can tell, and the largest.
+const LOG_TOLERANCE: (f64, f64) = (1.3, 2.2);
 /// The spread is shrunk towards the usual one, which is a little below 1.
 const SPREAD_EXPONENT: f64 = 0.7;
 /// The least and the largest log tolerance that the spread can lead to.
