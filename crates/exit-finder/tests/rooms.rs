@@ -234,6 +234,70 @@ fn a_gap_across_zero_is_one() {
 }
 
 #[test]
+fn jambs_are_the_two_ends_of_the_door() {
+    // A door from x = 0.6 to 1.5 in the wall y = −2, seen at a slant: its jambs are 2.09 and 2.5 away.
+    let door = [Some([2.6, 3.5]), None, None, None];
+    let hall = room([-6.0; 2], [6.0; 2], [None; 4]);
+    let walls = Walls([room([-2.0; 2], [2.0; 2], door).0, hall.0].concat());
+    let points = walls.seen_from([0.0; 2], 1440, 20.0);
+    let report = search(&points, [0.0; 2], &ExitConfig::default());
+    assert_eq!(report.exits.len(), 1);
+    let exit = &report.exits[0];
+    for (jamb, expected) in exit.jambs.iter().zip([[0.6, -2.0, 1.0], [1.5, -2.0, 1.0]]) {
+        let off = (0..3).map(|i| (jamb[i] - expected[i]).powi(2)).sum::<f64>();
+        assert!(off.sqrt() < 0.08, "{jamb:?} {expected:?}");
+    }
+    assert!((exit.width - 0.9).abs() < 0.1, "{}", exit.width);
+}
+
+#[test]
+fn a_jamb_is_where_the_wall_was_seen_last() {
+    // Four degrees of the wall beside the door are blank.
+    let degrees = |p: &[f64; 3]| p[1].atan2(p[0]).to_degrees();
+    let door = [Some([2.6, 3.5]), None, None, None];
+    let hall = room([-6.0; 2], [6.0; 2], [None; 4]);
+    let walls = Walls([room([-2.0; 2], [2.0; 2], door).0, hall.0].concat());
+    let mut points = walls.seen_from([0.0; 2], 1440, 20.0);
+    points.retain(|p| !(-53.3..-49.0).contains(&degrees(p)));
+    let exit = &search(&points, [0.0; 2], &ExitConfig::default()).exits[0];
+    assert!(
+        (degrees(&exit.jambs[1]) + 49.0).abs() < 1.1,
+        "{:?}",
+        exit.jambs
+    );
+}
+
+#[test]
+fn half_an_opening_at_the_border_of_a_scan_is_not_judged() {
+    let degrees = |p: &[f64; 3]| p[1].atan2(p[0]).to_degrees();
+    let mut points = square_in_hall(1).seen_from([0.0; 2], 1440, 20.0);
+    points.retain(|p| !(-68.0..-40.0).contains(&degrees(p)));
+    let agent = [0.0, 0.0, 1.0];
+    let plane = AffinePlane::from_up(UP, agent).unwrap();
+    // Somebody looked from −40 degrees on to −68 all the way round, or all the way round.
+    let exits = |width: f64| {
+        let count = 12;
+        let gaze = |k: usize| (-40.0 + width * (k as f64 + 0.5) / count as f64).to_radians();
+        let gaze = |k: usize| Gaze {
+            position: agent,
+            forward: [gaze(k).cos(), gaze(k).sin(), 0.0],
+            half_fov_rad: (0.5 * width / count as f64).to_radians(),
+        };
+        let gazes: Vec<Gaze> = (0..count).map(gaze).collect();
+        let view = ExitView {
+            gazes: &gazes,
+            ..Default::default()
+        };
+        find_exits(&points, agent, &plane, &view, &ExitConfig::default()).unwrap()
+    };
+    let partial = exits(332.0);
+    assert!(partial.exits.is_empty() && partial.unseen.len() == 1);
+    let full = exits(361.0);
+    let door = |exit: &exit_finder::Exit| exit.sector.contains(1.5 * std::f64::consts::PI);
+    assert!(full.unseen.is_empty() && full.exits.iter().any(door));
+}
+
+#[test]
 fn gazes_tell_unseen_from_empty() {
     let points = square(1).seen_from([0.0; 2], 1080, 20.0);
     let agent = [0.0, 0.0, 1.0];

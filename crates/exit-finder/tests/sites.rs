@@ -80,6 +80,9 @@ fn virtual_points_close_used_portals_only() {
     let gone = graph.portals()[0].middle();
     assert!(again.exits[0].direction[0] * gone[0] < 0.0);
     assert!(again.profile.counts.hidden > 0 && again.profile.counts.virtual_used == closed.len());
+    // A way that turned out to be blocked is closed like one that was used.
+    graph.block(PortalId(1)).unwrap();
+    assert!(report(&graph.virtual_points(AGENT, 10.0)).exits.is_empty());
 }
 
 #[test]
@@ -122,7 +125,15 @@ fn a_map_correction_moves_sites_and_portals() {
         .map(exit_finder::sites::Portal::middle)
         .collect();
     let quarter = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    let axes = graph.sites()[0].plane.axes();
     assert_eq!(graph.reanchor(&pose([10.0, 0.0, 1.0], quarter)), Ok(0));
+    for (old, new) in axes.iter().zip(graph.sites()[0].plane.axes()) {
+        let expected = [-old[1], old[0], old[2]];
+        assert!(
+            (0..3).all(|i| (new[i] - expected[i]).abs() < 1e-9),
+            "{new:?}"
+        );
+    }
     for (old, portal) in old.iter().zip(graph.portals()) {
         let expected = [10.0 - old[1], old[0] - 0.5, old[2]];
         let new = portal.middle();

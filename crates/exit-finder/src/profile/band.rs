@@ -77,3 +77,35 @@ impl Band {
         LAYERS[usize::from(!level) * outside]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_lies_at_level_in_the_widened_band_above_or_below() {
+        let band = Band {
+            heights: Some([-0.5, 0.5]),
+            strip: Strip {
+                pitch: 0.1,
+                tilt: [0.0, 0.2],
+            },
+            widening: 0.25,
+        };
+        // Four units towards bearing a quarter turn the middle of the strip is 1.2 up, and the band 1 wide to either side.
+        let layer = |height: f64| band.layer_of([0.0, 4.0], 4.0, height);
+        assert_eq!(layer(1.2 + 0.49), Layer::Level);
+        assert_eq!(layer(1.2 - 0.49), Layer::Level);
+        assert_eq!(layer(1.2 + 0.99), Layer::Band);
+        assert_eq!(layer(1.2 - 0.99), Layer::Band);
+        assert_eq!(layer(1.2 + 1.01), Layer::Above);
+        assert_eq!(layer(1.2 - 1.01), Layer::Below);
+        // Nearby the band is as wide as its heights say.
+        assert_eq!(band.layer_of([0.4, 0.0], 0.4, 0.55), Layer::Above);
+        let all = Band {
+            heights: None,
+            ..band
+        };
+        assert_eq!(all.layer_of([0.0, 4.0], 4.0, 99.0), Layer::Level);
+    }
+}

@@ -55,25 +55,23 @@ impl Edges {
         }
         let [x, y] = direction;
         let (a, b) = (x.abs(), y.abs());
-        let step = (a.min(b) / a.max(b) * CELLS as f64) as usize;
+        let step = (a.min(b) / a.max(b) * CELLS as f64) as u32 as usize;
         let octant = usize::from(b > a) + 2 * usize::from(x < 0.0) + 4 * usize::from(y < 0.0);
         usize::from(self.guesses[octant * (CELLS + 1) + step.min(CELLS)]).min(last)
     }
 
-    /// The bin of a direction of any length but zero.
+    /// The bin of a direction of any length but zero. Without branches: whether a guess is right is a matter of chance, and a
+    /// mispredicted branch costs more than both cross products.
     #[inline]
     pub(crate) fn bin_of(&self, direction: [f64; 2]) -> usize {
-        let last = self.directions.len() - 2;
+        let n = self.directions.len() - 1;
         let guess = self.guess(direction);
-        if is_before(direction, self.directions[guess]) {
-            guess.checked_sub(1).unwrap_or(last)
-        } else if is_before(direction, self.directions[guess + 1]) {
-            guess
-        } else if guess == last {
-            0
-        } else {
-            guess + 1
-        }
+        let too_far = is_before(direction, self.directions[guess]);
+        let far_enough = too_far | is_before(direction, self.directions[guess + 1]);
+        let bin = guess + n - usize::from(too_far) + usize::from(!far_enough);
+        let wrapped = if bin >= 2 * n { 2 * n } else { n };
+        let below = if bin >= n { wrapped } else { 0 };
+        bin - below
     }
 }
 
