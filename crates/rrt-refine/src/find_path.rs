@@ -4,8 +4,8 @@
 //! Method: 1. RRT-Connect; 2. [`taut`](crate::refine::taut()): the shortest path over its vertices (the paper's refinement), corners cut,
 //! again; 3. a planner that stops at its first path may take the longer way round an obstacle, and no refiner changes sides. So plan
 //! again for a path shorter by `min_gain`, of length c at most: all its points lie in the ellipsoid { x : |x − start| + |x − goal| ≤ c },
-//! so no motion may leave it and samples come from the box around it; 4. until a search of `further_iterations` finds nothing, or
-//! `attempts` are made.
+//! so no motion may leave it and samples come from the box around it; 4. until a search finds nothing, or `attempts` are made. A search may
+//! take as many samples as there is to gain: a number in proportion to what the path is longer than the straight line.
 //! Cost: a search and a refinement an attempt, the later ones in less and less space; one check where the straight motion is free.
 //!
 //! References: Kuffner, LaValle 2000 (RRT-Connect); the ellipsoid is that of Gammell, Srinivasa, Barfoot, "Informed RRT*", IROS 2014.
@@ -28,8 +28,9 @@ pub struct FindPathConfig {
     pub taut: TautConfig,
     /// How often to plan; at least 1. Default 6. With 1 the first path found is refined and returned.
     pub attempts: usize,
-    /// Most samples of each search for something shorter; 0 or more. Default 250: twice as many find the shorter way
-    /// more often and take half as long again.
+    /// Most samples of each search for something shorter where the path is twice as long as the straight line, 0 or more; in proportion
+    /// to the excess over that line where it is more or less, and [`RrtConfig::max_iterations`] at most. Default 5,000, which is 250
+    /// for a path 5 % longer than the straight line.
     pub further_iterations: usize,
     /// A further path must be shorter by this share; 0 to below 1. Default 0.03.
     pub min_gain: f64,
@@ -41,7 +42,7 @@ impl Default for FindPathConfig {
             rrt: RrtConfig::default(),
             taut: TautConfig::default(),
             attempts: 6,
-            further_iterations: 250,
+            further_iterations: 5_000,
             min_gain: 0.03,
         }
     }
@@ -60,6 +61,13 @@ impl FindPathConfig {
             return Err(ConfigError::MinGain { value }.into());
         }
         Ok(self.taut.validate()?)
+    }
+
+    /// Samples of a search for something shorter than a path that is longer than the straight line by this share of it.
+    fn samples_for(&self, excess: f64) -> usize {
+        // Saturates where the excess is not a number, or too large to count.
+        let samples = (self.further_iterations as f64 * excess).ceil() as usize;
+        samples.min(self.rrt.max_iterations)
     }
 }
 
@@ -107,11 +115,6 @@ pub fn find_path<const D: usize>(
     config.validate()?;
     let plan = rrt_connect(query, motion_is_free, &config.rrt, rng)?;
     let mut best = refined(plan, motion_is_free, &config.taut)?;
-    let further = RrtConfig {
-        max_iterations: config.further_iterations,
-        try_straight: false,
-        ..config.rrt
-    };
     while let Some(path) = &best.path
         && best.attempts < config.attempts
     {
@@ -120,6 +123,11 @@ pub fn find_path<const D: usize>(
         };
         let free = |from: &[f64; D], to: &[f64; D]| {
             within.holds(from) && within.holds(to) && motion_is_free.is_free(from, to)
+        };
+        let further = RrtConfig {
+            max_iterations: config.samples_for(within.excess(path.length())),
+            try_straight: false,
+            ..config.rrt
         };
         let plan = rrt_connect(&within.query, &free, &further, rng)?;
         let next = refined(plan, motion_is_free, &config.taut)?;
@@ -198,6 +206,13 @@ impl<const D: usize> Shorter<D> {
         })
     }
 
+    /// By how much a path is longer than the straight line to the nearest goal, as a share of that line.
+    fn excess(&self, length: f64) -> f64 {
+        let goals = self.query.goals.iter();
+        let straight = goals.map(|goal| distance(&self.query.start, goal));
+        length / straight.fold(f64::INFINITY, f64::min) - 1.0
+    }
+
     /// Whether a path through the point can be that short.
     fn holds(&self, point: &[f64; D]) -> bool {
         let to_start = distance(&self.query.start, point);
@@ -230,6 +245,16 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use super::*;
+
+    #[test]
+    fn a_search_takes_as_many_samples_as_there_is_to_gain() {
+        let config = FindPathConfig::default();
+        let samples = [0.05, 0.1, 1.0].map(|excess| config.samples_for(excess));
+        assert_eq!(samples, [250, 500, 5_000]);
+        // A start next to its goal, or on it.
+        assert_eq!(config.samples_for(f64::INFINITY), 10_000);
+        assert_eq!(config.samples_for(f64::NAN), 0);
+    }
 
     #[test]
     fn the_box_holds_every_point_of_a_short_path_and_little_more() -> Result<(), crate::BoundsError>

@@ -3,8 +3,8 @@
 use rand::SeedableRng as _;
 use rand_pcg::Pcg64;
 use rrt_refine::{
-    Bounds, MotionValidator, Path, PlanError, Query, Refined, RrtConfig, RrtStarConfig, Stop,
-    refine, rrt, rrt_connect, rrt_star,
+    Bounds, FindPathConfig, MotionValidator, Path, PlanError, Query, Refined, RrtConfig,
+    RrtStarConfig, find_path, refine, rrt, rrt_connect, rrt_star,
 };
 use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Space, kmeans};
 
@@ -19,9 +19,6 @@ const POINTS_PER_CLUSTER: usize = 12;
 pub(crate) const RADIUS_M: f64 = 0.15;
 /// Longest edge of the tree, metres.
 const STEP_M: f64 = 1.5;
-/// How often a planner is asked that stops at its first path. Each takes some 0.05 ms among a few hundred
-/// hulls.
-const ATTEMPTS: usize = 6;
 /// Space around the map's points in which paths may lead, metres.
 const ROOM_M: f64 = 0.5;
 
@@ -216,11 +213,12 @@ pub(crate) struct Question<'a> {
 }
 
 impl Question<'_> {
-    /// How often the planner is asked.
-    fn attempts(&self) -> usize {
-        let improves_itself = matches!(self.planner, Planner::RrtStar | Planner::InformedRrtStar);
-        let bare = self.refiner == Refiner::None;
-        if improves_itself || bare { 1 } else { ATTEMPTS }
+    /// What every planner is told.
+    fn config(&self) -> RrtConfig {
+        RrtConfig {
+            step_length: STEP_M * self.units_per_meter,
+            ..RrtConfig::default()
+        }
     }
 
     /// Where paths may lead: the box of the points, less the outermost of each axis, and of both ends.
@@ -245,63 +243,60 @@ pub(crate) struct Answer {
 
 /// Plans and refines. A start or goal that is not free is an error; no path within the budget is not.
 ///
-/// A planner that stops at its first path may find a long way round, and refining does not change sides. So
-/// it is asked a few times, and the shortest refined path is the answer.
+/// The default planner and refiner go on looking for anything shorter; any other pair is asked once.
 pub(crate) fn plan(question: &Question<'_>, bounds: &Bounds<3>) -> Result<Answer, Failure> {
     let free = |a: &[f64; 3], b: &[f64; 3]| {
         let (space, radius) = (question.space, question.radius);
         space.motion_is_free(*a, *b, radius)
     };
+    let query = Query::new(question.from, question.to, *bounds);
     let mut rng = Pcg64::seed_from_u64(question.seed);
+    if question.planner == Planner::RrtConnect && question.refiner == Refiner::Dag {
+        let config = FindPathConfig {
+            rrt: question.config(),
+            ..FindPathConfig::default()
+        };
+        let found = find_path(&query, &free, &config, &mut rng).map_err(|error| refusal(&error))?;
+        return Ok(Answer {
+            paths: found.plan.path.zip(found.path),
+            checks: found.checks,
+        });
+    }
+    let found = search(question, &query, &free, &mut rng).map_err(|error| refusal(&error))?;
     let mut answer = Answer {
         paths: None,
-        checks: 0,
+        checks: found.checks,
     };
-    for _ in 0..question.attempts() {
-        let found = search(question, bounds, &free, &mut rng).map_err(|error| refusal(&error))?;
-        answer.checks += found.checks;
-        let Some(raw) = found.path else {
-            break;
-        };
+    if let Some(raw) = found.path {
         let refined = refine_path(question, &raw, &free)?;
         answer.checks += refined.as_ref().map_or(0, |refined| refined.checks);
         let path = refined.map_or_else(|| raw.clone(), |refined| refined.path);
-        let shortest = answer.paths.as_ref().map(|(_, best)| best.length());
-        if shortest.is_none_or(|shortest| path.length() < shortest) {
-            answer.paths = Some((raw, path));
-        }
-        if found.stop == Stop::Straight {
-            break;
-        }
+        answer.paths = Some((raw, path));
     }
     Ok(answer)
 }
 
 fn search(
     question: &Question<'_>,
-    bounds: &Bounds<3>,
+    query: &Query<3>,
     free: &impl MotionValidator<3>,
     rng: &mut Pcg64,
 ) -> Result<rrt_refine::Plan<3>, PlanError> {
-    let query = Query::new(question.from, question.to, *bounds);
-    let config = RrtConfig {
-        step_length: STEP_M * question.units_per_meter,
-        ..RrtConfig::default()
-    };
+    let config = question.config();
     let star = |base: RrtStarConfig| RrtStarConfig {
         rrt: config,
         ..base
     };
     match question.planner {
-        Planner::Rrt => rrt(&query, free, &config, rng),
-        Planner::RrtConnect => rrt_connect(&query, free, &config, rng),
+        Planner::Rrt => rrt(query, free, &config, rng),
+        Planner::RrtConnect => rrt_connect(query, free, &config, rng),
         Planner::RrtStar => {
             let config = star(RrtStarConfig::default());
-            rrt_star(&query, free, &config, rng)
+            rrt_star(query, free, &config, rng)
         }
         Planner::InformedRrtStar => {
             let config = star(RrtStarConfig::informed());
-            rrt_star(&query, free, &config, rng)
+            rrt_star(query, free, &config, rng)
         }
     }
 }
