@@ -1,7 +1,7 @@
 //! Matches pairs of images and estimates their relative pose, for the comparison in `two_view.py`.
 //!
 //! Usage: two_view raw|aligned FX FY CX CY K1 K2 P1 P2 K3 FIRST SECOND [FIRST SECOND...]; prints per pair "pair N
-//! microseconds T alignment A geometry G parallax P residual Q sigma S homography H rotation R", the 12 numbers of the
+//! microseconds T alignment A geometry G parallax P residual Q sigma S margin M homography H rotation R", the 12 numbers of the
 //! motion (row by row, zeros when refused), and N lines "x1 y1 x2 y2" (undistorted pixels).
 #![allow(
     clippy::print_stdout,
@@ -101,13 +101,15 @@ fn print_motion(found: Option<&TwoView>) {
             let [parallax, residual, sigma] =
                 [f.parallax, f.residual_parallax, f.direction_sigma].map(f64::to_degrees);
             println!(
-                "geometry {:?} parallax {parallax:.3} residual {residual:.3} sigma {sigma:.2} homography {:.3} rotation {:.3}",
-                f.geometry, f.homography_share, f.rotation_share
+                "geometry {:?} parallax {parallax:.3} residual {residual:.3} sigma {sigma:.2} margin {:.2} homography {:.3} rotation {:.3}",
+                f.geometry, f.margin, f.homography_share, f.rotation_share
             );
             f.second_from_first.to_homogeneous()
         }
         None => {
-            println!("geometry None parallax 0 residual 0 sigma 0 homography 0 rotation 0");
+            println!(
+                "geometry None parallax 0 residual 0 sigma 0 margin 0 homography 0 rotation 0"
+            );
             Matrix4::zeros()
         }
     };

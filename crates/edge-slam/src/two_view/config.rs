@@ -37,6 +37,9 @@ pub struct TwoViewConfig {
     /// Greatest standard deviation of the direction of travel, radians, > 0. Default 10 degrees, under which 98 % of
     /// the same pairs are.
     pub max_direction_sigma: f64,
+    /// Least [`TwoView::margin`](super::TwoView::margin) against another direction of travel, standard deviations. Default 1: the least of 0.5 to 3
+    /// that left no wrong direction among the pairs on which it was chosen.
+    pub min_margin: f64,
     /// A rotation that explains this share of the inliers, within twice the threshold, is the whole motion,
     /// 0..=1. Default 0.8.
     pub rotation_share: f64,
@@ -56,6 +59,7 @@ impl Default for TwoViewConfig {
             min_residual_parallax: 0.2_f64.to_radians(),
             residual_per_turn: 0.01,
             max_direction_sigma: 10_f64.to_radians(),
+            min_margin: 1.0,
             planar_share: 0.45,
             rotation_share: 0.8,
         }

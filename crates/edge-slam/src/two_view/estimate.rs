@@ -3,9 +3,10 @@
 //! 1. RANSAC over five-point samples, Sampson distances, truncated squares; every new best is polished.
 //! 2. Competing models: a homography and a pure rotation. The homography's share of the scores of Mur-Artal et
 //!    al. 2015, and the share of inliers that a rotation explains, say what the scene allows.
-//! 3. Of the four motions of E the one with most points in front of both cameras; a last polish on its inliers.
-//! 4. The motion counts as general only if parallax is left when the best rotation is taken out, and if parts of the
-//!    image agree about the direction.
+//! 3. The loss may have several minima; the lowest of them (see `minima.rs`).
+//! 4. Of the four motions of E the one with most points in front of both cameras; a last polish on its inliers.
+//! 5. The motion counts as general only if parallax is left when the best rotation is taken out, if parts of the
+//!    image agree about the direction, and if no other minimum explains the matches as well.
 
 use nalgebra::{Isometry3, Point2};
 use rand::Rng;
@@ -49,6 +50,9 @@ pub struct TwoView {
     /// Standard deviation of the translation's direction along its worst axis, radians: from how much parts of the
     /// image disagree (see [`direction_deviation`](super::direction_deviation)); infinite when undetermined.
     pub direction_sigma: f64,
+    /// How clearly the matches speak for this pose and against the next best direction of travel: a standard score, infinite
+    /// without a rival (Vuong 1989).
+    pub margin: f64,
     /// S_H / (S_H + S_E).
     pub homography_share: f64,
     /// Share of the inliers that a rotation alone explains.
@@ -96,11 +100,16 @@ pub fn estimate_two_view(
     };
     let essential = matches.search_essential(schedule, rng).ok_or(too_few(0))?;
     let pose = matches.best_pose(&essential.model).ok_or(too_few(0))?;
+    let lowest = matches.lowest_minimum(matches.polish_pose(pose).0);
+    let pose = matches
+        .best_pose(&essential_of(&lowest.pose))
+        .ok_or(too_few(0))?;
     let (pose, inliers) = matches.polish_pose(pose);
     if inliers.len() < config.min_inliers {
         return Err(too_few(inliers.len()));
     }
     let rivals = Rivals {
+        margin: lowest.margin,
         homography_share: matches.homography_share(&essential_of(&pose), schedule, rng),
         rotation: matches.search_rotation(schedule, rng),
     };

@@ -6,6 +6,7 @@ mod estimate;
 mod five_point;
 mod homography;
 mod matches;
+mod minima;
 mod polynomial;
 mod ransac;
 mod refine;

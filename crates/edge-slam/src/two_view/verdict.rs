@@ -12,6 +12,8 @@ use super::{Geometry, TwoView, TwoViewConfig, triangulate};
 /// Simpler explanations of the same matches.
 pub(super) struct Rivals {
     pub(super) homography_share: f64,
+    /// Against another direction of travel.
+    pub(super) margin: f64,
     /// The rotation that most matches agree with.
     pub(super) rotation: Option<UnitQuaternion<f64>>,
 }
@@ -38,6 +40,7 @@ impl Matches {
             homography_share: rivals.homography_share,
             rotation_share: rivals.rotation.map_or(0.0, explained),
             samples: 0,
+            margin: rivals.margin,
             inliers,
         }
     }
@@ -55,7 +58,8 @@ impl Matches {
             || found.inliers.len() < config.min_confident_inliers
             || found.parallax < config.min_parallax
             || found.residual_parallax < config.min_residual_parallax + bent
-            || found.direction_sigma > config.max_direction_sigma;
+            || found.direction_sigma > config.max_direction_sigma
+            || found.margin < config.min_margin;
         if found.rotation_share > config.rotation_share {
             Geometry::PureRotation
         } else if is_weak {
