@@ -119,7 +119,7 @@ proptest! {
         let b = beta.value(n);
         if exact_oracle {
             let t = grown.iterations as f64;
-            prop_assert!(worst(&grown.x) <= (2.0 + t / b + b) * tau + 1e-9);
+            prop_assert!(worst(&grown.x) <= (2.0 + (t - 1.0) / b + b) * tau + 1e-9);
         }
         prop_assert!(grown.iterations <= n + 1);
         let singles = min_by_singletons(&f, oracle, &BruteForce).unwrap();

@@ -110,3 +110,34 @@ impl<F: JointFunction + ?Sized> SetFunction for GrowthObjective<'_, F> {
         Some(sum)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::functions::{Dense, Representation};
+
+    #[test]
+    fn line_5_in_closed_form_is_line_5() {
+        let similarity = Dense::from_fn(5, 5, |u, v| ((3 * u + 5 * v) % 7) as f64 / 7.0).unwrap();
+        let function = Representation::new(similarity, vec![0.3; 5], 0.2).unwrap();
+        for before in 0..32 {
+            let before = Subset::from_mask(5, before);
+            let growth = GrowthObjective {
+                function: &function,
+                beta: 0.7,
+                before: &before,
+                y: Subset::from_indices(5, [1, 4]),
+            };
+            let closed = growth.as_modular().unwrap();
+            for set in 0..32 {
+                let set = Subset::from_mask(5, set);
+                let before = set.union(growth.before);
+                let nothing = Subset::empty(5);
+                let wanted =
+                    0.7 * function.value(&before, &nothing) + function.value(&set, &growth.y);
+                assert!((growth.value(&set) - wanted).abs() < 1e-12);
+                assert!((closed.value(&set) - wanted).abs() < 1e-12);
+            }
+        }
+    }
+}

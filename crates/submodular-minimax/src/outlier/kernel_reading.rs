@@ -90,10 +90,15 @@ impl Settings {
             .filter(|&v| strict.best(v) <= STRICT)
             .map(|v| cloud.points[v])
             .collect();
-        let dirt = ((suspects.len() as f64 / n as f64 - 0.12) / 0.14).clamp(0.0, 1.0);
+        self.gated(n, suspects.len() as f64 / n as f64, reach_among(&suspects))
+    }
+
+    /// What [`Settings::adapted`] says, from the number of points, the share of suspects and the reach among these.
+    fn gated(self, n: usize, suspects: f64, reach: Option<f64>) -> Self {
+        let dirt = ((suspects - 0.12) / 0.14).clamp(0.0, 1.0);
         let small = (n as f64 / 5e3).clamp(0.4, 1.0);
         let size = ((n as f64 / 1e4).ln() / 5.0_f64.ln()).clamp(0.0, 1.0);
-        let reach = reach_among(&suspects).unwrap_or(self.reach);
+        let reach = reach.unwrap_or(self.reach);
         Self {
             reach: reach.clamp(SHORTEST * self.reach, LONGEST * self.reach),
             threshold: self.threshold * (2.0 + dirt) / 3.0 * (1.0 - size / 4.0),
@@ -156,5 +161,39 @@ fn silence_small_components(graph: &NeighbourGraph, min_component: f64, weight: 
         if (components.size(u) as f64) < min_component {
             *weight = 0.0;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gates_open_with_dirt_and_size() {
+        let base = Settings {
+            reach: 7.0,
+            threshold: 0.3,
+            support: 2.0,
+            min_component: 15.0,
+        };
+        let check = |n, suspects, reach, wanted: [f64; 4]| {
+            let found = base.gated(n, suspects, reach);
+            let found = [
+                found.reach,
+                found.threshold,
+                found.support,
+                found.min_component,
+            ];
+            for (found, wanted) in found.into_iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-12, "{found} for {wanted}");
+            }
+        };
+        check(10_000, 0.05, None, [7.0, 0.2, 2.0, 15.0]);
+        check(10_000, 0.19, Some(9.0), [9.0, 0.25, 3.0, 16.5]);
+        check(10_000, 0.40, Some(1.0), [6.0, 0.3, 4.0, 18.0]);
+        check(50_000, 0.05, Some(99.0), [14.0, 0.15, 2.0, 15.0]);
+        check(1_000_000, 0.26, None, [7.0, 0.225, 4.0, 18.0]);
+        check(2_500, 0.0, None, [7.0, 0.2, 2.0, 7.5]);
+        check(100, 0.0, None, [7.0, 0.2, 2.0, 6.0]);
     }
 }

@@ -68,3 +68,43 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     }
     if alone > 0.0 { together / alone } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points spread evenly over spheres round the origin, so many on each, and some points near the origin.
+    fn shells(count: impl Fn(f64) -> f64, near: usize) -> Vec<[f64; 3]> {
+        let mut points = Vec::new();
+        for shell in 0..5 {
+            let radius = 2.0 + f64::from(shell);
+            let many = count(radius) as usize;
+            for i in 0..many {
+                let height = (2 * i + 1) as f64 / many as f64 - 1.0;
+                let (flat, turn) = ((1.0 - height * height).sqrt(), 2.4 * i as f64);
+                points.push([flat * turn.cos(), flat * turn.sin(), height].map(|x| radius * x));
+            }
+        }
+        points.extend((0..near).map(|i| [0.01 * i as f64, 0.02, 0.03]));
+        points
+    }
+
+    fn recognised(points: &[[f64; 3]]) -> bool {
+        let cloud = Cloud::new(points).ok().unwrap();
+        view(&cloud, &RangeTree::new(&cloud.points, &[])).is_some()
+    }
+
+    #[test]
+    fn a_cloud_that_thins_out_is_seen_from_the_origin_unless_the_origin_is_full() {
+        assert!(recognised(&shells(|_| 120.0, 0)));
+        assert!(recognised(&shells(|_| 120.0, 4)));
+        assert!(!recognised(&shells(|_| 120.0, 12)));
+    }
+
+    #[test]
+    fn a_cloud_that_is_dense_far_away_and_one_of_few_points_are_not() {
+        assert!(!recognised(&shells(|radius| 8.0 * radius.powi(3), 0)));
+        assert!(recognised(&shells(|_| 20.0, 0)));
+        assert!(!recognised(&shells(|_| 19.0, 0)));
+    }
+}

@@ -107,3 +107,47 @@ impl<G: Borrow<NeighbourGraph>> Problem<G> {
             .max(1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::neighbours::RangeTree;
+
+    /// Ten points one apart; a neighbour's score is 0.5, the bar as given.
+    fn line(threshold: f64) -> Problem {
+        let points: Vec<[f64; 3]> = (0..10).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+        let graph = NeighbourGraph::new(&RangeTree::new(&points, &[]), 4, f64::INFINITY);
+        let (reach, weight) = (2.0, vec![1.0; 10]);
+        Problem {
+            graph,
+            score: Score::Kernel { reach, weight },
+            threshold: vec![threshold; 10],
+            beta: 1.0,
+        }
+    }
+
+    #[test]
+    fn representatives_are_few_enough_for_a_function_that_is_not_negative() {
+        // λ n = 0.25 · 10.
+        assert_eq!(line(0.5).representatives(64), 2);
+        assert_eq!(line(0.5).representatives(1), 1);
+        assert_eq!(line(0.02).representatives(64), 1);
+        assert_eq!(line(9.0).representatives(64), 10);
+    }
+
+    #[test]
+    fn a_score_that_only_reaches_its_bar_does_not_join() {
+        let at = line(0.5);
+        assert!(at.shortfalls().iter().all(|&shortfall| shortfall == 0.0));
+        let function = at.function();
+        let entries = (0..10).map(|v| at.best(v)).fold(0.0, f64::max);
+        assert_eq!(entries, 0.5);
+        assert!((function.lambda()[3] - 0.25).abs() < 1e-15);
+        assert!(
+            line(0.499)
+                .shortfalls()
+                .iter()
+                .all(|&shortfall| shortfall < 0.0)
+        );
+    }
+}

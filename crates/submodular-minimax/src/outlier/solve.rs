@@ -59,3 +59,30 @@ pub(super) fn solve(
         stop: StopReason::ClosedForm,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::neighbours::{NeighbourGraph, RangeTree};
+    use crate::outlier::problem::Score;
+
+    #[test]
+    fn points_that_only_reach_their_bar_are_removed_by_both_solvers() {
+        let points: Vec<[f64; 3]> = (0..10).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+        for solver in [Solver::ClosedForm, Solver::Engine] {
+            let (reach, weight) = (2.0, vec![1.0; 10]);
+            let problem = Problem {
+                graph: NeighbourGraph::new(&RangeTree::new(&points, &[]), 4, f64::INFINITY),
+                score: Score::Kernel { reach, weight },
+                threshold: vec![0.5; 10],
+                beta: 1.0,
+            };
+            let config = OutlierConfig {
+                solver,
+                ..OutlierConfig::nearest()
+            };
+            let found = solve(&problem, &config).unwrap();
+            assert_eq!(found.removed, (0..10).collect::<Vec<_>>(), "{solver:?}");
+        }
+    }
+}
