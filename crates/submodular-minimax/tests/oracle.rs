@@ -124,10 +124,21 @@ proptest! {
         prop_assert!(grown.iterations <= n + 1);
         let singles = min_by_singletons(&f, oracle, &BruteForce).unwrap();
         prop_assert!(worst(&singles.x) <= (n as f64 + 1.0) * tau + 1e-9);
+        // h(X) = f(X) + Σ f(X ∪ {u}), of which theirs is the least.
+        let h = |x: &Subset| {
+            let alone = (0..n).map(|u| f.value(x, &Subset::from_indices(n, [u]))).sum::<f64>();
+            f.value(x, &Subset::empty(n)) + alone
+        };
+        let least = (0..16).map(|m| h(&Subset::from_mask(n, m))).fold(f64::INFINITY, f64::min);
+        prop_assert!(h(&singles.x) <= least + 1e-9);
         let others = [
             best_response(&f, oracle, &BruteForce, &config).unwrap(),
             max_then_min(&f, oracle, &BruteForce).unwrap(),
         ];
+        // Best-Response meets the empty set first and the answer of Max-and-then-Min next, and keeps the best.
+        let nothing = oracle.constraint().upper_bound(f.given_x(&Subset::empty(n)).as_ref());
+        let met = nothing.min(others[1].certificate.upper_bound);
+        prop_assert!(others[0].certificate.upper_bound <= met + 1e-9);
         for solution in [&grown, &singles].into_iter().chain(&others) {
             prop_assert!(solution.certificate.lower_bound <= tau + 1e-9);
             prop_assert!(worst(&solution.x) <= solution.certificate.upper_bound + 1e-9);

@@ -68,3 +68,22 @@ impl<F: JointFunction + ?Sized> SetFunction for InnerMinimum<'_, F> {
         minimize(&given, self.minimizer).map_or(f64::NAN, |minimum| minimum.value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::functions::{Dense, Representation};
+    use crate::laws::submodularity;
+    use crate::minimize::BruteForce;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_inner_minimum_is_submodular(values in prop::collection::vec(0.0..1.0_f64, 25), lambda in 0.0..1.0_f64) {
+            let similarity = Dense::new(5, 5, values).unwrap();
+            let function = Representation::new(similarity, vec![lambda; 5], 0.2).unwrap();
+            let inner = InnerMinimum { function: &function, minimizer: &BruteForce };
+            prop_assert_eq!(submodularity(&inner, 1e-9), None);
+        }
+    }
+}
