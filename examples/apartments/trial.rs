@@ -89,6 +89,7 @@ pub(crate) struct Belief {
 
 impl Belief {
     pub(crate) fn new(scan: &Scan, contradiction: f64, seed: u64) -> Result<Self, Box<dyn Error>> {
+        // The default for motions among hulls: more distance to single points closes the way for a quarter of the queries.
         let config = FreeSpaceConfig {
             clearance: RADIUS,
             contradiction_log_odds: contradiction,
@@ -122,6 +123,7 @@ pub(crate) fn queries(
     rng: &mut Pcg64,
 ) -> Result<Vec<[Place; 2]>, Box<dyn Error>> {
     let lines_alone = FreeSpaceConfig {
+        resolution: 0.1,
         range_margin: 0.0,
         patch_half_angle: 0.0,
         max_triangle_angle: 0.0,

@@ -13,7 +13,6 @@ pub(crate) const HULLS_CLEARANCE: f64 = 0.2;
 
 /// One row of the table.
 pub(crate) struct Setting {
-    pub(crate) name: &'static str,
     pub(crate) config: FreeSpaceConfig,
     /// Points that rays contradict are no surface.
     pub(crate) drops_contradicted: bool,
@@ -37,31 +36,24 @@ pub(crate) struct Measured {
     pub(crate) dropped: usize,
 }
 
-/// The library's settings and those of `explorer obstacles --proven-free`, each with rays only and two widths of triangles.
+/// The library's settings, with rays only and two widths of triangles. The last is what `explorer obstacles --proven-free` exports.
 pub(crate) fn settings(arguments: &Arguments) -> Vec<Setting> {
     let default = FreeSpaceConfig {
         resolution: arguments.voxel,
         contradiction_log_odds: arguments.contradiction,
         ..FreeSpaceConfig::default()
     };
-    let export = FreeSpaceConfig {
-        clearance: 0.22,
-        ..default.clone()
-    };
     let mut settings = Vec::new();
-    for (name, base) in [("default", default), ("export", export)] {
-        for drops_contradicted in [false, true] {
-            for max_triangle_angle in [0.0, 0.1, 0.25] {
-                let config = FreeSpaceConfig {
-                    max_triangle_angle,
-                    ..base.clone()
-                };
-                settings.push(Setting {
-                    name,
-                    config,
-                    drops_contradicted,
-                });
-            }
+    for drops_contradicted in [false, true] {
+        for max_triangle_angle in [0.0, 0.1, default.max_triangle_angle] {
+            let config = FreeSpaceConfig {
+                max_triangle_angle,
+                ..default.clone()
+            };
+            settings.push(Setting {
+                config,
+                drops_contradicted,
+            });
         }
     }
     settings

@@ -40,7 +40,7 @@ pub(crate) fn measured(
         .filter(|i| !outliers.contains(i))
         .collect();
     let config = FreeSpaceConfig {
-        clearance: 0.1,
+        resolution: arguments.voxel,
         contradiction_log_odds: arguments.contradiction,
         ..FreeSpaceConfig::default()
     };

@@ -63,10 +63,9 @@ pub(crate) fn row(
     };
     let pair = |open: Open| format!("{} | {}", counted(open.surface, surface), open.places);
     let (centers, touch) = (pair(measured.by_centers), pair(measured.by_touch));
-    let name = setting.name;
     writeln!(
         out,
-        "| {name} | {clearance} | {ratio} | {triangles} | {dropped} | {centers} | {touch} |"
+        "| proven free | {clearance} | {ratio} | {triangles} | {dropped} | {centers} | {touch} |"
     )
 }
 

@@ -269,10 +269,7 @@ fn true_surfaces_of_a_kitchen_stay_closed() {
     assert!(hulls * 5 > surface, "{hulls} of {surface}");
     let settings = settings(&arguments);
     for (setting, row) in settings.iter().zip(&rows) {
-        println!(
-            "{} {}: {row:?}",
-            setting.name, setting.config.max_triangle_angle
-        );
+        println!("{}: {row:?}", setting.config.max_triangle_angle);
         // Whoever keeps all points leaves 0.05 % open to motions.
         let kept = !setting.drops_contradicted;
         assert!(!kept || row.by_touch.surface * 1_900 <= surface && row.by_centers.surface <= 5);
@@ -286,7 +283,7 @@ fn true_surfaces_of_a_kitchen_stay_closed() {
     let (hulls, proven) = (planner.hulls, planner.proven);
     println!("plan: hulls only {hulls}, {proven:?}");
     assert!(
-        hulls * 3 > surface && proven.surface * 100 <= surface,
+        hulls * 3 > surface && proven.surface * 1_000 <= surface,
         "{hulls}, {proven:?}"
     );
 }

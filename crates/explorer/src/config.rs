@@ -3,6 +3,7 @@
 use core::time::Duration;
 
 use exit_finder::ExitConfig;
+use sparse_to_obstacles::{FreeSpaceConfig, FreeSpaceError};
 use submodular_minimax::{Cues, OutlierConfig};
 
 /// Constants of one mission. `Default` flies a Tello through rooms.
@@ -64,14 +65,9 @@ pub struct PerceptionConfig {
     /// Exits are looked for among the points that keyframes within this distance of the drone saw, metres: a scan's own, with some
     /// from the way there.
     pub exit_view_m: f64,
-    /// Edge of a proven-free voxel, metres.
-    pub voxel_m: f64,
-    /// Half opening angle of the cone that a matched feature proves free, radians: a 31 pixel ORB patch at f = 920 pixels
-    /// covers 15 / 920.
-    pub patch_half_angle: f64,
-    /// Widest angle between neighbouring rays whose space between is taken as seen through, radians: above the library's 0.1, since a
-    /// turn on the spot leaves wedges before blank walls unproven from the drone itself outward; hulls keep the body clear all the same.
-    pub max_triangle_angle: f64,
+    /// Proven-free space, metres. The library's default, but for `clearance`: the hulls keep the body clear of points, and lines of sight
+    /// pass nearer to them than a body may.
+    pub free_space: FreeSpaceConfig,
     /// Points to a cluster on average: K = points / this (paper: K is given, the map's size is not).
     pub points_per_cluster: usize,
     /// Clusters longer than this are split, metres, so that no hull bridges a doorway.
@@ -140,9 +136,10 @@ impl Default for PerceptionConfig {
             clean: cleaning(),
             exits: ExitConfig::default(),
             exit_view_m: 1.0,
-            voxel_m: 0.10,
-            patch_half_angle: 15.0 / 920.0,
-            max_triangle_angle: 0.15,
+            free_space: FreeSpaceConfig {
+                clearance: 0.10,
+                ..FreeSpaceConfig::default()
+            },
             points_per_cluster: 12,
             largest_obstacle_m: 0.6,
         }
@@ -182,6 +179,9 @@ pub enum ConfigError {
         /// What it may be.
         range: &'static str,
     },
+    /// A number of proven-free space.
+    #[error(transparent)]
+    FreeSpace(#[from] FreeSpaceError),
 }
 
 impl MissionConfig {
@@ -284,21 +284,7 @@ fn cleaning() -> OutlierConfig {
 impl PerceptionConfig {
     fn validate(&self) -> Result<(), ConfigError> {
         within("exit_view_m", self.exit_view_m, 0.0, 1e3, "0..=1000 m")?;
-        within("voxel_m", self.voxel_m, 0.01, 1.0, "0.01..=1 m")?;
-        within(
-            "patch_half_angle",
-            self.patch_half_angle,
-            0.0,
-            0.2,
-            "0..=0.2 rad",
-        )?;
-        within(
-            "max_triangle_angle",
-            self.max_triangle_angle,
-            0.0,
-            1.0,
-            "0..=1 rad",
-        )?;
+        self.free_space.validate()?;
         within(
             "points_per_cluster",
             self.points_per_cluster as f64,

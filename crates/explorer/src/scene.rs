@@ -16,8 +16,7 @@ use nalgebra::{Point3, Vector3};
 use rand::Rng;
 use slam_bridge::Map;
 use sparse_to_obstacles::{
-    FreeSpace, FreeSpaceConfig, FreeSpaceError, ObstacleConfig, ObstacleError, ObstacleSet, Ray,
-    Space,
+    FreeSpace, FreeSpaceError, ObstacleConfig, ObstacleError, ObstacleSet, Ray, Space,
 };
 use submodular_minimax::{OutlierError, Views, ViewsError, remove_outliers};
 
@@ -33,10 +32,6 @@ const ENOUGH_WITNESSES: usize = 2;
 const SPARE_SHARE: f64 = 0.8;
 /// Keyframes look the same way that are this near, metres, and whose axes have this cosine.
 const SAME_VIEW: (f64, f64) = (0.2, 0.94);
-
-/// Largest ratio of the depths of neighbouring points between which the space counts as seen through: what the missions were
-/// measured with. The library's default is smaller.
-const MAX_DEPTH_RATIO: f64 = 1.5;
 
 /// Halvings when a clearance is searched.
 const CLEARANCE_BITS: u32 = 5;
@@ -346,7 +341,11 @@ fn proven_free(
     presence: &[Presence],
     config: &MissionConfig,
 ) -> Result<FreeSpace, SceneError> {
-    let settings = free_space_config(meters_per_unit, config);
+    let settings = config
+        .perception
+        .free_space
+        .clone()
+        .scaled(1.0 / meters_per_unit);
     let mut free = FreeSpace::from_rays(rays(map, kept, meters_per_unit), solid, &settings)?;
     for places in presence.chunk_by(|a, b| a.radius == b.radius) {
         let centers: Vec<[f64; 3]> = places.iter().map(|place| place.center).collect();
@@ -401,19 +400,6 @@ fn rays(map: &Map, kept: &[usize], meters_per_unit: f64) -> Vec<Ray> {
     rays
 }
 
-fn free_space_config(meters_per_unit: f64, config: &MissionConfig) -> FreeSpaceConfig {
-    FreeSpaceConfig {
-        resolution: config.perception.voxel_m,
-        patch_half_angle: config.perception.patch_half_angle,
-        max_triangle_angle: config.perception.max_triangle_angle,
-        max_depth_ratio: MAX_DEPTH_RATIO,
-        // The hulls keep the body clear of points; asking for more here would close doorways.
-        clearance: config.drone_radius_m,
-        ..FreeSpaceConfig::default()
-    }
-    .scaled(1.0 / meters_per_unit)
-}
-
 fn obstacles(
     solid: &[[f64; 3]],
     meters_per_unit: f64,
@@ -439,7 +425,7 @@ impl Scene {
     ) -> Self {
         use rand::SeedableRng;
 
-        let settings = free_space_config(1.0, config);
+        let settings = config.perception.free_space.clone();
         let mut space = FreeSpace::from_rays([], &points, &settings).unwrap();
         space.add_balls(free, radius).unwrap();
         let mut rng = rand_pcg::Pcg64::seed_from_u64(1);

@@ -20,8 +20,6 @@ const PRESENCE: KeyframeId = KeyframeId::MAX;
 pub(super) struct Evidence {
     /// The first keyframes that saw through, each once. A presence fills all.
     witnesses: [KeyframeId; 4],
-    /// Those of them that have a ray of their own here.
-    by_ray: [KeyframeId; 4],
     /// The points that all sightings have in common: of a ray its end, of a triangle its corners.
     shared: [PointId; 3],
     crossed: u16,
@@ -39,7 +37,6 @@ impl Evidence {
         }
         self.last_ray = ray;
         self.crossed = self.crossed.saturating_add(1);
-        remember(&mut self.by_ray, keyframe);
         self.witness(keyframe, [point, NO_POINT, NO_POINT]);
     }
 
@@ -71,9 +68,10 @@ impl Evidence {
             return true;
         }
         let last = config.min_keyframes.clamp(1, self.witnesses.len()) - 1;
-        // One wrong point is a corner of many triangles, which together open a window in whatever stands before it.
+        // One wrong point, on which several keyframes agree, is at the end of a pencil of rays and a corner of many triangles:
+        // together they open a window in whatever stands before it.
         let corroborated = last == 0 || self.shared == [NO_POINT; 3];
-        let seen = self.by_ray[last] != NOBODY || corroborated && self.witnesses[last] != NOBODY;
+        let seen = corroborated && self.witnesses[last] != NOBODY;
         seen && self.log_odds(config) <= config.free_log_odds
     }
 

@@ -146,12 +146,17 @@ mod tests {
             VoxelState::Unknown,
             "all hang on one"
         );
-        // A ray of each keyframe is proof by itself.
+        // A ray of each keyframe is proof by itself, but not to one point.
         let keyframes = [shared[0].origin, shared[3].origin];
-        let rays = keyframes.map(|origin| Ray {
-            origin,
-            end: [4.0, 0.05, 0.05],
-        });
-        assert_eq!(state([&shared[..], &rays].concat()), VoxelState::Free);
+        let rays = |ends: [Vec3; 2]| {
+            let rays = [0, 1].map(|i| Ray {
+                origin: keyframes[i],
+                end: ends[i],
+            });
+            state([&shared[..], &rays].concat())
+        };
+        let [end, other] = [[4.0, 0.05, 0.05], [4.0, 0.05, 0.06]];
+        assert_eq!(rays([end, other]), VoxelState::Free);
+        assert_eq!(rays([end, end]), VoxelState::Unknown);
     }
 }

@@ -31,8 +31,8 @@ use surface::Surface;
 ///
 /// What no ray has crossed is not free, whether or not there are points: blank walls, windows and all
 /// that the camera never looked at. Voxels are cubes of [`FreeSpaceConfig::resolution`] whose corners are
-/// multiples of it. A crossed voxel counts as free as a whole, so what is thinner than a voxel or
-/// grazed by rays may be cut by up to a voxel; the resolution is the accuracy of the proof.
+/// multiples of it. A crossed voxel counts as free as a whole, and points and keyframes are noisy: a surface without
+/// points that rays graze may be entered by up to a voxel, which is the accuracy of the proof. Nothing hangs on a single point.
 #[derive(Clone, Debug)]
 pub struct FreeSpace {
     config: FreeSpaceConfig,
@@ -63,11 +63,11 @@ impl FreeSpace {
     /// ```
     /// use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, Ray};
     ///
-    /// // Two keyframes see the same patch of wall at x = 3.
+    /// // Four keyframes see the same patch of wall at x = 3.
     /// let wall: Vec<[f64; 3]> = (0..400)
     ///     .map(|i| [3.0, f64::from(i % 20) * 0.1 - 1.0, f64::from(i / 20) * 0.1 - 1.0])
     ///     .collect();
-    /// let keyframes = [[0.0, 0.05, 0.0], [0.0, -0.05, 0.0]];
+    /// let keyframes = [[0.0, 0.0, 0.0], [0.1, 0.2, 0.0], [0.2, -0.1, 0.1], [0.3, 0.1, -0.1]];
     /// let rays = keyframes
     ///     .iter()
     ///     .flat_map(|&origin| wall.iter().map(move |&end| Ray { origin, end }));

@@ -9,6 +9,7 @@ const NOTHING: [Vec3; 0] = [];
 
 fn config() -> FreeSpaceConfig {
     FreeSpaceConfig {
+        resolution: 0.1,
         min_keyframes: 1,
         clearance: 0.0,
         ..FreeSpaceConfig::default()
@@ -143,16 +144,12 @@ fn a_cone_carves_its_width() {
 }
 
 #[test]
-fn two_different_keyframes_are_needed() {
-    let end = [2.0, 0.05, 0.05];
-    let a = Ray {
-        origin: [0.0, 0.05, 0.05],
-        end,
-    };
-    let b = Ray {
-        origin: [-0.3, 0.05, 0.05],
-        end,
-    };
+fn two_different_keyframes_and_points_are_needed() {
+    let [origin, other_origin] = [[0.0, 0.05, 0.05], [-0.3, 0.05, 0.05]];
+    let [end, other_end] = [[2.0, 0.05, 0.05], [2.0, 0.05, 0.06]];
+    let ray = |origin, end| Ray { origin, end };
+    let a = ray(origin, end);
+    let b = ray(other_origin, other_end);
     let config = FreeSpaceConfig {
         min_keyframes: 2,
         ..config()
@@ -162,6 +159,11 @@ fn two_different_keyframes_are_needed() {
         space.state([1.0, 0.05, 0.05])
     };
     assert_eq!(state(&[a, a, a]), VoxelState::Unknown);
+    let one_keyframe = [a, ray(origin, other_end)];
+    assert_eq!(state(&one_keyframe), VoxelState::Unknown);
+    // They may agree on a wrong point.
+    let one_point = [a, ray(other_origin, end)];
+    assert_eq!(state(&one_point), VoxelState::Unknown);
     assert_eq!(state(&[a, b]), VoxelState::Free);
     let mut grown = FreeSpace::from_rays([a], &NOTHING, &config).unwrap();
     grown.insert([a], &NOTHING).unwrap();

@@ -25,13 +25,8 @@ const ROOM_M: f64 = 0.5;
 /// Share of the points on each side of each axis that paths do not lead around.
 const OUTERMOST: f64 = 0.01;
 
-/// Distance that exported places keep from every point, metres: 0.2 and a quarter of a voxel, since a
-/// place stands for a whole voxel.
-const EXPORT_CLEARANCE_M: f64 = 0.22;
-/// Edge of a voxel where free space is exported and measured, metres.
-const EXPORT_VOXEL_M: f64 = 0.08;
-/// Widest gap between two rays that is exported as seen through, rad: 14 degrees.
-const EXPORT_GAP: f64 = 0.25;
+/// Edge of a voxel of proven-free space, metres: finer than the library's default, since an exported place stands for its whole voxel.
+const VOXEL_M: f64 = 0.08;
 
 /// Everything that stands in the way, and what was seen through.
 #[derive(Debug)]
@@ -60,12 +55,7 @@ pub(crate) fn surroundings(
 ) -> Result<Surroundings, Failure> {
     let mut points = at(&loaded.points, kept);
     let clusters = check_clusters(clusters, points.len())?;
-    // Hulls keep the body clear of obstacles; more distance to single points would close doors.
-    let config = FreeSpaceConfig {
-        clearance: 0.1,
-        ..FreeSpaceConfig::default()
-    };
-    let config = config.scaled(units_per_meter);
+    let config = free_space_config(units_per_meter);
     let (free, free_space) = timed(|| prove(loaded, kept, &mut points, &config));
     let free = free?;
     let (obstacles, kmeans, hulls) = hulls(&points, clusters.min(points.len()), seed)?;
@@ -90,13 +80,7 @@ pub(crate) fn measured_surroundings(
 ) -> Result<Surroundings, Failure> {
     let points = &loaded.points;
     let clusters = check_clusters(Some(clusters), points.len())?;
-    let config = FreeSpaceConfig {
-        resolution: EXPORT_VOXEL_M,
-        clearance: EXPORT_CLEARANCE_M,
-        max_triangle_angle: EXPORT_GAP,
-        ..FreeSpaceConfig::default()
-    };
-    let config = config.scaled(units_per_meter);
+    let config = free_space_config(units_per_meter);
     let all: Vec<usize> = (0..points.len()).collect();
     let mut solid = points.clone();
     let (free, free_space) = timed(|| prove(loaded, &all, &mut solid, &config));
@@ -111,6 +95,15 @@ pub(crate) fn measured_surroundings(
             free_space,
         },
     })
+}
+
+/// The settings of proven-free space, for the export and for paths alike.
+fn free_space_config(units_per_meter: f64) -> FreeSpaceConfig {
+    FreeSpaceConfig {
+        resolution: VOXEL_M,
+        ..FreeSpaceConfig::default()
+    }
+    .scaled(units_per_meter)
 }
 
 /// The obstacles, and the seconds that K-means and the hulls took.
