@@ -5,6 +5,8 @@
     reason = "a broken expectation must fail the test"
 )]
 
+use std::cell::{Cell, RefCell};
+
 use rand_pcg::Pcg64;
 use rrt_refine::{
     Bounds, FindPathConfig, Plan, PlanError, Query, Rrt, RrtConfig, RrtConnect, RrtStar,
@@ -143,6 +145,12 @@ fn the_default_pipeline_says_how_often_it_planned() {
     assert_eq!(path.first_blocked(&free), None);
     assert!(path.length() < raw.length() && path.length() < 1.05 * serpentine_length());
     assert!(winding.checks > winding.plan.checks);
+    let calls = Cell::new(0);
+    let counted = find(&|a, b| {
+        calls.set(calls.get() + 1);
+        free(a, b)
+    });
+    assert!(counted.checks >= calls.get());
     // Without a way, or with the straight one, there is nothing to ask again for.
     let closed = find(&serpentine(0.0));
     assert_eq!((closed.attempts, closed.plan.stop), (1, Stop::Iterations));
@@ -150,6 +158,44 @@ fn the_default_pipeline_says_how_often_it_planned() {
     let open = find(&|_, _| true);
     assert_eq!((open.attempts, open.plan.stop), (1, Stop::Straight));
     assert_eq!(open.path.expect("a path").points(), [START, GOAL]);
+}
+
+#[test]
+fn further_searches_stay_where_a_shorter_path_can_lie_and_take_time_by_what_it_can_save() {
+    let asked = |walls: Free<'_>, attempts, further_iterations| {
+        let motions = RefCell::new(Vec::new());
+        let free = |a: &P, b: &P| {
+            motions.borrow_mut().push([*a, *b]);
+            walls(a, b)
+        };
+        let config = FindPathConfig {
+            rrt: short_steps(),
+            attempts,
+            further_iterations,
+            min_gain: 0.0,
+            ..FindPathConfig::default()
+        };
+        let found = find_path(&question(), &free, &config, &mut Pcg64::new(11, 3));
+        let length = found.expect("fair").path.expect("a path").length();
+        (length, motions.into_inner())
+    };
+    let gap = |a: P, b: P| (a[0] - b[0]).hypot(a[1] - b[1]);
+    // One wall that is open below: the ellipse is narrow, its box and the bounds are not.
+    let wall: Free<'_> = &|a, b| {
+        let crossing = (3.0 - a[0]) / (b[0] - a[0]);
+        !(0.0..=1.0).contains(&crossing) || a[1] + crossing * (b[1] - a[1]) < 0.4
+    };
+    let (length, first) = asked(wall, 1, 0);
+    let (_, both) = asked(wall, 2, 20_000);
+    assert!(both.len() > first.len() + 10);
+    for place in both[first.len()..].iter().flatten() {
+        assert!(gap(START, *place) + gap(*place, GOAL) <= length + 1e-9);
+    }
+    let walls = serpentine(0.4);
+    let (_, first) = asked(&walls, 1, 0);
+    // The way is about twice as long as the straight line, so that all of the samples may be drawn.
+    let (_, many) = asked(&walls, 6, 2_000);
+    assert!(many.len() > first.len() + 1_000, "{}", many.len());
 }
 
 #[test]
@@ -189,6 +235,7 @@ fn more_attempts_find_the_shorter_side() {
     let length = |attempts: usize, seed: u128| {
         let config = FindPathConfig {
             attempts,
+            min_gain: 0.0,
             ..FindPathConfig::default()
         };
         let found = find_path(&question(), &free, &config, &mut Pcg64::new(seed, 3));
@@ -198,6 +245,11 @@ fn more_attempts_find_the_shorter_side() {
         .map(|seed| [length(1, seed), length(6, seed)])
         .collect();
     assert!(lengths.iter().all(|[once, best]| best <= once));
+    // Each attempt begins as the one before: it finds something shorter, or nothing.
+    for seed in 0..20 {
+        let lengths: Vec<f64> = (1..=6).map(|attempts| length(attempts, seed)).collect();
+        assert!(lengths.is_sorted_by(|a, b| a >= b), "{lengths:?}");
+    }
     // Over the upper corners: 4.4 long, and two slopes of 0.3 along and 0.1 up; under the lower ones it is 11 % more.
     let shortest = 4.4 + 2.0 * 0.3_f64.hypot(0.1);
     assert!(lengths.iter().any(|[once, _]| *once > 1.05 * shortest));

@@ -69,3 +69,19 @@ pub fn dag_by_cost<const D: usize>(
         stop: RefineStop::Done,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cost_below_the_length_or_that_is_none_counts_as_the_length() -> Result<(), crate::PathError>
+    {
+        let corner = Path::new(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])?;
+        for cost in [-1.0, 0.0, f64::NAN] {
+            let refined = dag_by_cost(&corner, &|_: &[f64; 2], _: &[f64; 2]| true, &|_, _| cost);
+            assert_eq!(refined.path.points(), [[0.0, 0.0], [1.0, 1.0]], "{cost}");
+        }
+        Ok(())
+    }
+}

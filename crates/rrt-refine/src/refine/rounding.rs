@@ -284,6 +284,43 @@ mod tests {
     }
 
     #[test]
+    fn every_changed_motion_is_checked() -> Result<(), RefineError> {
+        let round = |free: &dyn Fn(&[f64; 2], &[f64; 2]) -> bool| {
+            let config = RoundingConfig::default();
+            round_corners(&corner(), &free, &|_| f64::INFINITY, &config)
+        };
+        // Refused are the way to the arc, the way from it, and its chords, one at a time.
+        let before_arc = round(&|a, _| *a != [0.0, 0.0])?;
+        let after_arc = round(&|_, b| *b != [4.0, 4.0])?;
+        let chords = round(&|a, b| *a == [0.0, 0.0] || *b == [4.0, 4.0])?;
+        for refused in [before_arc, after_arc, chords] {
+            assert_eq!(refused.path, corner());
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_corner_is_tried_again_when_its_neighbour_is_rounded() -> Result<(), RefineError> {
+        // An arc of radius 2 around the first corner meets the block, one of radius 1 does not: there is room for no more once the
+        // second corner is an arc.
+        let path = Path::from_vertices(vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [8.0, 4.0]]);
+        let free = |a: &[f64; 2], b: &[f64; 2]| {
+            (0..=100).all(|k| {
+                let [x, y] = between(a, b, f64::from(k) / 100.0);
+                !(x < 3.55 && (0.45..2.0).contains(&y))
+            })
+        };
+        let config = RoundingConfig {
+            max_radius: 9.0,
+            halvings: 0,
+            ..RoundingConfig::default()
+        };
+        let path = round_corners(&path, &free, &|_| f64::INFINITY, &config)?.path;
+        assert!(path.turns().iter().all(|turn| *turn <= FRAC_PI_6 + 1e-9));
+        Ok(())
+    }
+
+    #[test]
     fn reversals_and_bad_parameters() -> Result<(), RefineError> {
         let back = Path::from_vertices(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 0.0]]);
         let config = RoundingConfig::default();

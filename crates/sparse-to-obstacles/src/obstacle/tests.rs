@@ -318,6 +318,12 @@ fn a_cluster_that_rays_cross_does_not_bridge_a_doorway() {
     assert!(!split.motion_is_free([1.0, 1.0, 1.0], [3.0, 1.0, 1.0], 0.2));
     let few = ObstacleSet::from_observed_points(&points, &rays[..3], &config, &mut rng(1)).unwrap();
     assert!(!through(&few));
+    let sparse = ObstacleConfig {
+        min_split_points: points.len() + 1,
+        ..config
+    };
+    let whole = ObstacleSet::from_observed_points(&points, &rays, &sparse, &mut rng(1)).unwrap();
+    assert_eq!(whole.len(), 1);
 }
 
 #[test]
