@@ -374,6 +374,29 @@ mod tests {
         assert!(at(10.0, 300.0) >= at(300.0, 300.0));
     }
 
+    proptest! {
+        #[test]
+        fn edges_are_the_weak_pixels_that_reach_a_strong_one(
+            width in 1usize..9, height in 1usize..9, seeds in prop::collection::vec(0u8..8, 64),
+        ) {
+            let stride = width + 2;
+            let mut class = vec![0; stride * (height + 2)];
+            for (k, seed) in seeds.iter().enumerate().filter(|(k, _)| k / 8 < height && k % 8 < width) {
+                class[(k / 8 + 1) * stride + k % 8 + 1] = [0, 0, 0, WEAK, WEAK, WEAK, WEAK, STRONG][usize::from(*seed)];
+            }
+            // Pixel by pixel until nothing changes.
+            let mut reached: Vec<bool> = class.iter().map(|&c| c == STRONG).collect();
+            loop {
+                let around = |k: usize| [stride + 1, stride, stride - 1, 1].into_iter().any(|d| reached[k - d] || reached[k + d]);
+                let new = (0..class.len()).find(|&k| class[k] == WEAK && !reached[k] && around(k));
+                let Some(k) = new else { break };
+                reached[k] = true;
+            }
+            keep_connected(&mut class, stride);
+            prop_assert_eq!(class.iter().map(|&c| c == EDGE).collect::<Vec<_>>(), reached);
+        }
+    }
+
     #[test]
     fn bad_parameters_are_refused() {
         let view = disc();

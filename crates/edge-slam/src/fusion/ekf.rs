@@ -507,6 +507,17 @@ mod tests {
         ekf
     }
 
+    #[test]
+    fn the_gate_parts_what_is_taken_from_what_is_not() {
+        let mut ekf = filter([0.0; 7], VelocityFrame::Body);
+        for gate in [ekf.config.attitude_gate, ekf.config.visual_gate] {
+            assert!(ekf.judge(gate, gate).accepted);
+            assert!(!ekf.judge(1.001 * gate, gate).accepted);
+        }
+        assert!(!ekf.judge(f64::NAN, f64::INFINITY).accepted);
+        assert!(!ekf.judge(f64::INFINITY, f64::INFINITY).accepted);
+    }
+
     fn vector(state: &NavigationState) -> SVector<f64, 7> {
         let (p, a) = (state.position, state.attitude);
         SVector::from([p.x, p.y, p.z, a.x, a.y, a.z, state.log_scale])
