@@ -1,13 +1,13 @@
 //! `explorer exits`: where the place opens.
 
-use exit_finder::{AffinePlane, ExitConfig, ExitReport, ExitView, Gaze, find_exits};
+use exit_finder::{AffinePlane, ExitConfig, ExitReport, ExitView, Gaze, Ray, find_exits};
 use serde::Serialize;
 
 use crate::args::{ExitRule, Exits, Output, Vector};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::deliver;
-use crate::planning::RADIUS_M;
+use crate::planning::{RADIUS_M, at};
 use crate::plot::{Figure, TopView, color, scene};
 
 /// Most exits that the text lists.
@@ -54,12 +54,13 @@ pub(crate) struct UnseenEntry {
 pub(crate) fn run(arguments: &Exits, output: &Output) -> Result<(), Failure> {
     let loaded = input::load(&arguments.input)?;
     loaded.check_position("--position", arguments.position)?;
-    let points = loaded.points.clone();
+    let points = &loaded.points;
+    let all: Vec<usize> = (0..points.len()).collect();
     // Without a scale nobody knows what is too narrow: then relative widths decide.
     let meters = loaded.map.scale.meters_per_unit();
     let report = exits(
         &loaded,
-        &points,
+        (&all, &[]),
         arguments.position,
         arguments.up,
         arguments.rule,
@@ -67,14 +68,15 @@ pub(crate) fn run(arguments: &Exits, output: &Output) -> Result<(), Failure> {
     )?;
     deliver(output, &report, &text(&report, loaded.unit()), || {
         let subtitle = headline(&report);
-        figure(&loaded, &points, &report, arguments.up, &subtitle)
+        figure(&loaded, points, &report, arguments.up, &subtitle)
     })
 }
 
-/// Looks for exits among these points, at least `min_width` map units wide.
+/// Looks for exits at least `min_width` map units wide. `kept` and `removed` are the indices of what a cleaning kept and took out: what
+/// it took out of a thinly seen wall still says that there is one, so those points are looked at too, with a cue for how many they are.
 pub(crate) fn exits(
     loaded: &LoadedMap,
-    points: &[[f64; 3]],
+    (kept, removed): (&[usize], &[usize]),
     position: Vector,
     up: Vector,
     rule: ExitRule,
@@ -89,11 +91,16 @@ pub(crate) fn exits(
         ExitRule::Paper => ExitConfig::paper(),
     };
     let gazes = gazes(loaded);
+    let doubtful = at(&loaded.points, removed);
+    let rays = rays(loaded, kept.iter().chain(removed));
     let view = ExitView {
         gazes: &gazes,
+        doubtful: &doubtful,
+        rays: &rays,
         ..ExitView::default()
     };
-    let found = find_exits(points, position, &plane, &view, &config).map_err(|error| {
+    let points = at(&loaded.points, kept);
+    let found = find_exits(&points, position, &plane, &view, &config).map_err(|error| {
         Failure::new(
             error,
             "check --position and --up, or give a map with more points",
@@ -134,6 +141,16 @@ fn gazes(loaded: &LoadedMap) -> Vec<Gaze> {
         half_fov_rad: frustum.half_horizontal,
     };
     loaded.map.keyframes.iter().map(gaze).collect()
+}
+
+/// Who saw which of these points, for a map with observations.
+fn rays<'a>(loaded: &LoadedMap, points: impl Iterator<Item = &'a usize>) -> Vec<Ray> {
+    let rays = loaded.rays(points.copied()).into_iter();
+    rays.map(|ray| Ray {
+        origin: ray.origin,
+        end: ray.end,
+    })
+    .collect()
 }
 
 pub(crate) fn headline(report: &ExitsReport) -> String {

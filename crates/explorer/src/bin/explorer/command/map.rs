@@ -106,7 +106,7 @@ fn pipeline(
     let (exits, exits_seconds) = timed(|| {
         exits::exits(
             loaded,
-            &points,
+            (&clean.kept_indices, &clean.removed_indices),
             position,
             up,
             ExitRule::RangeAware,
