@@ -3,6 +3,7 @@
 mod map_error;
 mod surface;
 
+use std::ops::Range;
 use std::path::Path;
 
 use edge_slam::evaluation::{
@@ -244,15 +245,26 @@ fn place(pose: &TimedPose) -> [f64; 3] {
     pose.pose.translation.vector.into()
 }
 
+/// The poses of the reference from the first compared one to the last: nobody estimated the others, and drawn they would look missed.
+fn compared(ape: &AbsolutePoseError) -> Range<usize> {
+    let places = || ape.pairs.iter().map(|&(_, j)| j);
+    places().min().unwrap_or(0)..places().max().map_or(0, |last| last + 1)
+}
+
 /// Both trajectories in the frame of the true one.
 fn tracks(ape: &AbsolutePoseError, estimate: &[TimedPose], reference: &[TimedPose]) -> [Track; 2] {
     let moved = |pose: &TimedPose| ape.alignment.apply(&place(pose).into()).into();
+    let truth = reference.get(compared(ape)).unwrap_or(reference);
+    let label = match truth.len() == reference.len() {
+        true => format!("reference ({})", reference.len()),
+        false => format!("reference ({} of {})", truth.len(), reference.len()),
+    };
     [
         Track {
-            label: format!("reference ({})", reference.len()),
+            label,
             color: color::WALL,
             dashed: true,
-            through: reference.iter().map(place).collect(),
+            through: truth.iter().map(place).collect(),
         },
         Track {
             label: format!("estimate ({})", estimate.len()),
@@ -267,15 +279,16 @@ fn tracks(ape: &AbsolutePoseError, estimate: &[TimedPose], reference: &[TimedPos
 fn figure(report: &EvaluateReport, ape: &AbsolutePoseError, tracks: &[Track; 2]) -> Figure {
     let [truth, found] = tracks;
     let axes = AxisPair::widest(tracks.iter().flat_map(|track| &track.through));
+    let first = compared(ape).start;
     let stroke = |&(i, j): &(usize, usize)| {
-        let (from, to) = (found.through.get(i)?, truth.through.get(j)?);
+        let (from, to) = (found.through.get(i)?, truth.through.get(j - first)?);
         Some([axes.project(from), axes.project(to)])
     };
     let ends = ape.pairs.iter().filter_map(stroke).collect();
     let title = "Estimated and true trajectory";
     let subtitle = format!(
-        "ATE rmse {:.4} m, {} pairs, {} alignment, scale {:.4}",
-        report.translation.rmse, report.pairs, report.align, report.scale
+        "ATE rmse {:.4} m, {} pairs, {} alignment by {}, scale {:.4}",
+        report.translation.rmse, report.pairs, report.align, report.align_by, report.scale
     );
     let mut figure = trajectory::figure(title, &subtitle, "m", axes, tracks);
     let errors = Layer::new(

@@ -112,8 +112,11 @@ impl MapError {
         let axes = AxisPair::widest(self.points.iter().chain(&self.surface));
         let threshold = self.report.threshold;
         let subtitle = self.report.headline();
-        let title = "Map by distance from the measured surface";
-        let mut figure = trajectory::figure(title, &subtitle, "m", axes, tracks);
+        let title = format!(
+            "Map by distance from the measured surface, moved by {}",
+            self.report.align_by
+        );
+        let mut figure = trajectory::figure(&title, &subtitle, "m", axes, tracks);
         let mut layers = vec![self.ground(axes)];
         // The worst on top, or they would drown.
         for (k, (tint, radius)) in STEPS.into_iter().enumerate() {
