@@ -31,6 +31,12 @@ impl Line {
         self.a * direction[0] + self.b * direction[1]
     }
 
+    /// Whether [`Line::distance`] is larger than `least`. Its square root is taken only where the squares are too close to tell.
+    pub(crate) fn is_farther_than(&self, least: f64) -> bool {
+        let ratio = (self.a * self.a + self.b * self.b) * (least * least);
+        ratio < 0.99 || (ratio < 1.01 && self.distance() > least)
+    }
+
     /// Distance from the agent.
     pub(crate) fn distance(&self) -> f64 {
         1.0 / self.a.hypot(self.b)
@@ -50,6 +56,9 @@ mod tests {
         }
         assert!(line.inverse_range([0.0, -1.0]) < 0.0);
         assert!((line.distance() - 2.0).abs() < 1e-12);
+        let least = [1.0, 1.995, 2.0 - 1e-9, 2.0 + 1e-9, 2.005, 4.0];
+        let farther = least.map(|least| line.is_farther_than(least));
+        assert_eq!(farther, [true, true, true, false, false, false]);
         assert_eq!(Line::through([1.0, 1.0], [2.0, 2.0]), None);
     }
 }

@@ -29,27 +29,29 @@ const SEEDS: usize = 360;
 /// Up to `most` lines with at least `least` representatives on each.
 pub(super) fn lines(sight: &Sight, most: usize, least: usize) -> Vec<Line> {
     let mut search = Search::new(sight);
-    let mut heap = search.proposals(least);
+    let (proposals, mut heap) = search.proposals(least);
     let mut found = Vec::new();
     while let Some(best) = heap.pop() {
         if found.len() >= most {
             break;
         }
-        if best
-            .seeds
+        let Proposal { line, seeds } = proposals[best.index as usize];
+        let middle = best.middle as usize;
+        if seeds
             .iter()
             .any(|&(bin, k)| search.entries[k][bin].is_nan())
         {
             continue;
         }
-        let score = search.score(&best.line, best.middle);
-        if score < best.score {
+        let score = search.score(&line, middle);
+        if score < best.score as usize {
             if score >= least {
-                heap.push(Proposal { score, ..best });
+                let score = score as u32;
+                heap.push(Ranked { score, ..best });
             }
             continue;
         }
-        let line = search.fitted(best.line, best.middle);
+        let line = search.fitted(line, middle);
         search.take_out(&line);
         found.push(line);
     }
@@ -59,16 +61,24 @@ pub(super) fn lines(sight: &Sight, most: usize, least: usize) -> Vec<Line> {
 /// A line to be tried.
 #[derive(Debug, Clone, Copy)]
 struct Proposal {
-    score: usize,
     line: Line,
-    /// Of the line from the agent, median ranges.
-    distance: f64,
-    middle: usize,
     /// The two entries that propose it: bin and representative.
     seeds: [(usize, usize); 2],
 }
 
-impl Ord for Proposal {
+/// What the heap knows of a proposal: little, since it moves each one many times.
+#[derive(Debug, Clone, Copy)]
+struct Ranked {
+    /// Of the line from the agent, median ranges.
+    distance: f64,
+    score: u32,
+    /// Bin in the middle of the pair.
+    middle: u32,
+    /// Among the proposals.
+    index: u32,
+}
+
+impl Ord for Ranked {
     /// By score; of equal ones the farther line, which turning the profile does not change.
     fn cmp(&self, other: &Self) -> Ordering {
         self.score
@@ -78,19 +88,19 @@ impl Ord for Proposal {
     }
 }
 
-impl PartialOrd for Proposal {
+impl PartialOrd for Ranked {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Proposal {
+impl PartialEq for Ranked {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Proposal {}
+impl Eq for Ranked {}
 
 struct Search<'a> {
     sight: &'a Sight,
@@ -117,9 +127,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn proposals(&self, least: usize) -> BinaryHeap<Proposal> {
+    fn proposals(&self, least: usize) -> (Vec<Proposal>, BinaryHeap<Ranked>) {
         let n = self.sight.n();
-        let mut heap = Vec::new();
+        let (mut proposals, mut ranked) = (Vec::new(), Vec::new());
         let apart = APART.map(|degrees| degrees * n / 360);
         for first in (0..n).step_by(n.div_ceil(SEEDS)) {
             for d in apart.into_iter().filter(|&d| d > 0) {
@@ -131,18 +141,18 @@ impl<'a> Search<'a> {
                     let middle = (first + d / 2) % n;
                     let score = self.score(&line, middle);
                     if score >= least {
-                        heap.push(Proposal {
-                            score,
+                        ranked.push(Ranked {
                             distance: line.distance(),
-                            line,
-                            middle,
-                            seeds,
+                            score: score as u32,
+                            middle: middle as u32,
+                            index: proposals.len() as u32,
                         });
+                        proposals.push(Proposal { line, seeds });
                     }
                 }
             }
         }
-        BinaryHeap::from(heap)
+        (proposals, BinaryHeap::from(ranked))
     }
 
     fn through(&self, seeds: [(usize, usize); 2]) -> Option<Line> {
@@ -153,7 +163,7 @@ impl<'a> Search<'a> {
         // Comparisons with NaN are false.
         let known = (p[0] + q[0]).is_finite();
         let line = Line::through(p, q).filter(|_| known)?;
-        (line.distance() > NEAREST).then_some(line)
+        line.is_farther_than(NEAREST).then_some(line)
     }
 
     /// Representatives on a line within the window around a bin.
