@@ -2,7 +2,8 @@
 # Any bytes on any port of the drone's protocols, and in any file that edge-slam reads: each fuzz target for 60 seconds (or the number
 # given), where nightly Rust is present; cargo-fuzz is installed when it is missing. The properties of the same parsers run in the ordinary
 # tests in any case. Left out: edge-slam's target `network`, which takes minutes to build; by hand, in crates/edge-slam:
-#     cargo +nightly fuzz run --features depth-onnx network
+#     cargo +nightly fuzz run --dev --sanitizer none --features depth-onnx network
+# Two minutes that way. Optimised and with the address sanitizer (without the two options) one of its dependencies alone takes several.
 set -euo pipefail
 crates="$(cd "$(dirname "$0")/../crates" && pwd)"
 seconds="${1:-60}"
