@@ -1,0 +1,42 @@
+//! Whole missions in the simulator, judged by the true geometry that the mission never sees.
+
+use explorer::{FlightSummary, MissionConfig, SimulatedFlight};
+use indoor_sim::{SimConfig, World};
+
+fn fly(world: &str, seed: u64) -> FlightSummary {
+    let place = World::named(world, seed).unwrap();
+    let (sim, mission) = (SimConfig::default(), MissionConfig::default());
+    let mut flight = SimulatedFlight::new(place, sim, mission, seed).unwrap();
+    while !flight.is_over() {
+        flight.step(&mut ());
+    }
+    flight.summary()
+}
+
+/// A drone that stops by itself, has seen all, and kept its whole body and half as much again away from everything solid.
+fn assert_explored(world: &str, seed: u64) {
+    let summary = fly(world, seed);
+    let body = MissionConfig::default().drone_radius_m;
+    let clearance = summary.min_clearance.unwrap();
+    assert_eq!(summary.outcome, "explored", "{world} {seed}: {summary:?}");
+    assert_eq!(summary.collisions, 0, "{world} {seed}: {summary:?}");
+    assert!(clearance > 1.5 * body, "{world} {seed}: {summary:?}");
+    assert!(summary.coverage > 0.95, "{world} {seed}: {summary:?}");
+}
+
+#[test]
+fn a_closed_room_is_explored_without_a_touch() {
+    for seed in [1, 12] {
+        assert_explored("closed-room", seed);
+    }
+}
+
+#[test]
+fn the_room_behind_a_door_is_found_without_a_touch() {
+    assert_explored("one-door-room", 1);
+}
+
+#[test]
+fn the_same_seed_flies_the_same_way() {
+    assert_eq!(fly("closed-room", 3), fly("closed-room", 3));
+}
