@@ -60,7 +60,7 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Explored => f.write_str("explored: no exit is left"),
-            Self::BatteryLow { percent } => write!(f, "landed at {percent} % battery"),
+            Self::BatteryLow { percent } => write!(f, "stopped at {percent} % battery"),
             Self::TrackingLost => f.write_str("landed because the pose was lost for good"),
             Self::NeverInitialized => {
                 f.write_str("landed because SLAM never initialised; give it more texture and light")
