@@ -14,7 +14,7 @@ use submodular_minimax::minimax::{
     best_response, iterative_x_growing, max_then_min, min_as_oracle, min_by_singletons,
 };
 use submodular_minimax::minimize::{BruteForce, MinNormPoint, MinimizeStop, Minimizer};
-use submodular_minimax::{Beta, JointFunction, MinimaxConfig, SetFunction, Subset};
+use submodular_minimax::{Beta, JointFunction, MinimaxConfig, SetFunction, StopReason, Subset};
 
 fn cut_with_weights(n: usize) -> impl Strategy<Value = (GraphCut, Modular)> {
     let pairs = n * (n - 1) / 2;
@@ -122,6 +122,7 @@ proptest! {
             prop_assert!(worst(&grown.x) <= (2.0 + (t - 1.0) / b + b) * tau + 1e-9);
         }
         prop_assert!(grown.iterations <= n + 1);
+        prop_assert_ne!(grown.stop, StopReason::IterationLimit);
         let singles = min_by_singletons(&f, oracle, &BruteForce).unwrap();
         prop_assert!(worst(&singles.x) <= (n as f64 + 1.0) * tau + 1e-9);
         // h(X) = f(X) + Σ f(X ∪ {u}), of which theirs is the least.

@@ -9,7 +9,7 @@
 //! 7  until X′ᵢ ⊆ Xᵢ₋₁, then return Xᵢ₋₁
 //! ```
 //!
-//! Cost: at most |N₁| + 1 rounds of one oracle call and one minimisation each.
+//! Cost: at most |N₁| + 1 rounds of one oracle call and one minimisation each, whatever oracle and minimiser answer.
 
 use super::solution::{MinimaxError, MinimaxSolution, finish, minimize, response_bound};
 use super::{MinimaxConfig, StopReason};
@@ -34,7 +34,8 @@ pub fn iterative_x_growing<F: JointFunction + ?Sized>(
     config: &MinimaxConfig,
 ) -> Result<MinimaxSolution, MinimaxError> {
     config.validate()?;
-    let beta = config.beta.value(function.x_size());
+    let n = function.x_size();
+    let beta = config.beta.value(n);
     let nothing = Subset::empty(function.y_size());
     let first = minimize(
         &GivenY {
@@ -43,12 +44,10 @@ pub fn iterative_x_growing<F: JointFunction + ?Sized>(
         },
         minimizer,
     )?;
-    let (mut x, mut lower_bound) = (first.set, first.lower_bound);
-    let mut iterations = 0;
-    let stop = loop {
-        if iterations == config.max_iterations {
-            break StopReason::IterationLimit;
-        }
+    let (mut x, mut lower_bound) = (Subset::empty(n).union(&first.set), first.lower_bound);
+    let (mut iterations, mut stop) = (0, StopReason::IterationLimit);
+    // X grows in every round but the last, whatever the minimiser answers, hence |N₁| + 1 rounds at most.
+    while iterations < config.max_iterations.min(n + 1) {
         iterations += 1;
         let answer = oracle.maximize(function.given_x(&x).as_ref())?;
         lower_bound = lower_bound.max(response_bound(function, &answer.set, minimizer)?);
@@ -58,15 +57,17 @@ pub fn iterative_x_growing<F: JointFunction + ?Sized>(
             before: &x,
             y: answer.set,
         };
-        let joining = minimize(&growth, minimizer)?.set;
-        if joining.is_subset(&x) {
-            break StopReason::Converged;
+        let grown = x.union(&minimize(&growth, minimizer)?.set);
+        if grown.len() == x.len() {
+            stop = StopReason::Converged;
+            break;
         }
-        x = x.union(&joining);
-        if x.len() == function.x_size() {
-            break StopReason::Exhausted;
+        x = grown;
+        if x.len() == n {
+            stop = StopReason::Exhausted;
+            break;
         }
-    };
+    }
     finish(
         function,
         x,
@@ -115,6 +116,57 @@ impl<F: JointFunction + ?Sized> SetFunction for GrowthObjective<'_, F> {
 mod tests {
     use super::*;
     use crate::functions::{Dense, Representation};
+    use crate::maximize::Greedy;
+    use crate::minimize::{BruteForce, MinimizeError, MinimizeStop, Minimum};
+
+    /// A minimiser that always wants an element that X does not have.
+    struct Stubborn;
+
+    impl Minimizer for Stubborn {
+        fn minimize(&self, function: &dyn SetFunction) -> Result<Minimum, MinimizeError> {
+            Ok(Minimum {
+                set: Subset::from_indices(9, [8]),
+                value: function.value(&Subset::empty(function.ground_size())),
+                lower_bound: 0.0,
+                iterations: 1,
+                stop: MinimizeStop::Optimal,
+            })
+        }
+    }
+
+    /// f(X ∪ Y) = |Y| without a closed form.
+    struct Count;
+
+    impl JointFunction for Count {
+        fn x_size(&self) -> usize {
+            4
+        }
+        fn y_size(&self) -> usize {
+            4
+        }
+        fn value(&self, _x: &Subset, y: &Subset) -> f64 {
+            y.len() as f64
+        }
+    }
+
+    #[test]
+    fn an_answer_outside_the_ground_set_does_not_keep_it_going() {
+        let run = |minimizer: &dyn Minimizer, max_iterations| {
+            let config = MinimaxConfig {
+                max_iterations,
+                ..MinimaxConfig::default()
+            };
+            let mut oracle = Greedy::cardinality(1);
+            iterative_x_growing(&Count, &mut oracle, minimizer, &config).unwrap()
+        };
+        for max_iterations in [1, 2, usize::MAX] {
+            for minimizer in [&Stubborn as &dyn Minimizer, &BruteForce] {
+                let found = run(minimizer, max_iterations);
+                assert_eq!((found.iterations, found.stop), (1, StopReason::Converged));
+                assert_eq!(found.x, Subset::empty(4));
+            }
+        }
+    }
 
     #[test]
     fn line_5_in_closed_form_is_line_5() {
