@@ -4,14 +4,15 @@ use core::time::Duration;
 use std::collections::HashMap;
 use std::error::Error;
 
+use explorer::map_views;
 use indoor_sim::{SimConfig, Simulator, World};
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{TautConfig, taut};
 use rrt_refine::{Bounds, Query, RrtConfig, rrt_connect};
 use slam_bridge::nalgebra::Point3;
-use slam_bridge::{KeyFrame, Map, SlamSource};
+use slam_bridge::{KeyFrame, SlamSource};
 use sparse_to_obstacles::Ray;
-use submodular_minimax::{OutlierConfig, Views, remove_outliers};
+use submodular_minimax::{OutlierConfig, remove_outliers};
 use tello_sdk::{Command, Distance, ReplyKind, Turn};
 
 pub(crate) type Place = [f64; 3];
@@ -191,7 +192,7 @@ fn collect(sim: &Simulator, world: World) -> Result<Scan, Box<dyn Error>> {
         .collect();
     let kept = remove_outliers(
         &map.positions(),
-        Some(&views(&map)?),
+        map_views(&map)?.as_ref(),
         &OutlierConfig::default(),
     )?
     .kept;
@@ -217,26 +218,4 @@ fn collect(sim: &Simulator, world: World) -> Result<Scan, Box<dyn Error>> {
         keyframes: map.keyframes.len(),
         world,
     })
-}
-
-/// Which keyframe saw which point, for the outlier removal.
-fn views(map: &Map) -> Result<Views, Box<dyn Error>> {
-    let index: HashMap<_, _> = map
-        .keyframes
-        .iter()
-        .zip(0..)
-        .map(|(k, i)| (k.id, i))
-        .collect();
-    let centers = map
-        .keyframes
-        .iter()
-        .map(|keyframe| keyframe.center().into());
-    let observers = map.points.iter().map(|point| {
-        let known = point
-            .observers
-            .iter()
-            .filter_map(|id| index.get(id).copied());
-        known.collect()
-    });
-    Ok(Views::new(centers.collect(), observers.collect())?)
 }

@@ -5,10 +5,12 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use edge_slam::evaluation::{Alignment, Similarity, TimedPose, align_points};
-use slam_bridge::{KeyFrameId, Map, read_map, read_tum};
+use edge_slam::evaluation::{Alignment, TimedPose, align_points};
+use explorer::map_views;
+use slam_bridge::nalgebra::Similarity3;
+use slam_bridge::{Map, read_map, read_tum};
 use sparse_to_obstacles::Ray;
-use submodular_minimax::{Views, ViewsError};
+use submodular_minimax::Views;
 
 use crate::arguments::Arguments;
 
@@ -55,7 +57,7 @@ pub(crate) fn aligned(
     folder: &Path,
     reference: &[TimedPose],
 ) -> Result<AlignedMap, Box<dyn Error>> {
-    let map = read_map(folder)?;
+    let mut map = read_map(folder)?;
     if !map.has_observations() {
         let folder = folder.display();
         let needed = "keyframes.csv and observations.csv(.gz) beside map.ply";
@@ -73,12 +75,14 @@ pub(crate) fn aligned(
         (similarity.apply(&own.into()) - truth).norm_squared()
     });
     let residual = (squared.sum::<f64>() / own.len() as f64).sqrt();
-    let points = map.points.iter();
+    map.transform(&Similarity3::from_isometry(
+        similarity.motion,
+        similarity.scale,
+    ));
+    let views = map_views(&map)?.ok_or("no keyframe sees anything")?;
     Ok(AlignedMap {
-        points: points
-            .map(|p| similarity.apply(&p.position).into())
-            .collect(),
-        views: views(&map, &similarity)?,
+        points: map.positions(),
+        views,
         matches: own.len(),
         residual,
     })
@@ -91,28 +95,6 @@ fn matches(map: &Map, reference: &[TimedPose]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>)
         Some((keyframe.center().into(), pose.translation.vector.into()))
     };
     map.keyframes.iter().filter_map(pair).unzip()
-}
-
-/// Who sees what.
-fn views(map: &Map, similarity: &Similarity) -> Result<Views, ViewsError> {
-    let place = |id: &KeyFrameId| {
-        let keyframes = &map.keyframes;
-        keyframes
-            .binary_search_by_key(id, |keyframe| keyframe.id)
-            .ok()
-    };
-    let center = |keyframe: &slam_bridge::KeyFrame| similarity.apply(&keyframe.center()).into();
-    let observers = map
-        .points
-        .iter()
-        .map(|point| point.observers.iter().filter_map(place).collect());
-    let scaled = |distance: f64| distance * similarity.scale;
-    let reach = (map.points.iter()).map(|point| point.max_distance.map(scaled));
-    Views::new(
-        map.keyframes.iter().map(center).collect(),
-        observers.collect(),
-    )?
-    .with_max_distances(reach.collect())
 }
 
 impl AlignedMap {

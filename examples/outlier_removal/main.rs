@@ -19,6 +19,7 @@ use std::error::Error;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use explorer::map_views;
 use slam_bridge::{Map, read_map};
 use submodular_minimax::{OutlierConfig, Views, remove_outliers};
 
@@ -257,28 +258,12 @@ fn recorded(
 }
 
 fn labelled(name: String, map: &Map, outlier: Labels) -> Result<Labelled, Box<dyn Error>> {
-    let views = map.has_observations().then(|| views(map)).transpose()?;
     Ok(Labelled {
         name,
         points: map.positions(),
-        views,
+        views: map_views(map)?,
         outlier,
     })
-}
-
-/// Which camera position saw which point.
-fn views(map: &Map) -> Result<Views, Box<dyn Error>> {
-    let place = |id| {
-        map.keyframes
-            .binary_search_by_key(id, |keyframe| keyframe.id)
-            .ok()
-    };
-    let centers = (map.keyframes.iter()).map(|keyframe| keyframe.center().into());
-    let observers =
-        (map.points.iter()).map(|point| point.observers.iter().filter_map(place).collect());
-    let reach = map.points.iter().map(|point| point.max_distance);
-    let views = Views::new(centers.collect(), observers.collect())?;
-    Ok(views.with_max_distances(reach.collect())?)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ pub mod baseline;
 mod calibration;
 mod config;
 mod heading;
+mod map_views;
 mod mission;
 mod reach;
 mod route;
@@ -16,6 +17,7 @@ mod telemetry;
 pub use calibration::{Calibration, MoveKind};
 pub use config::{ConfigError, ExplorationConfig, MissionConfig, PerceptionConfig};
 pub use heading::LevelPose;
+pub use map_views::map_views;
 pub use mission::{
     CommandOutcome, Cycle, Event, Goal, Input, Logged, Mission, MissionRecord, Outcome, Output,
     Scan, TrailPose,

@@ -18,10 +18,11 @@ use slam_bridge::Map;
 use sparse_to_obstacles::{
     FreeSpace, FreeSpaceError, ObstacleConfig, ObstacleError, ObstacleSet, Ray, Space,
 };
-use submodular_minimax::{OutlierError, Views, ViewsError, remove_outliers};
+use submodular_minimax::{OutlierError, ViewsError, remove_outliers};
 
 use crate::config::{MissionConfig, PerceptionConfig};
 use crate::heading::LevelPose;
+use crate::map_views::map_views;
 use crate::reach::Room;
 use crate::sight::Sight;
 use crate::stage::{Stage, StageObserver, staged};
@@ -296,41 +297,8 @@ fn clean(
     points: &[[f64; 3]],
     config: &PerceptionConfig,
 ) -> Result<submodular_minimax::OutlierRemoval, SceneError> {
-    let views = views(map)?;
+    let views = map_views(map)?;
     Ok(remove_outliers(points, views.as_ref(), &config.clean)?)
-}
-
-/// The map's observations as the outlier removal wants them; `None` for a map that has none.
-pub(crate) fn views(map: &Map) -> Result<Option<Views>, ViewsError> {
-    if !map.has_observations() {
-        return Ok(None);
-    }
-    let centers = map
-        .keyframes
-        .iter()
-        .map(|keyframe| keyframe.center().into())
-        .collect();
-    let observers = map
-        .points
-        .iter()
-        .map(|point| observer_indices(map, &point.observers))
-        .collect();
-    let reach = map.points.iter().map(|point| point.max_distance).collect();
-    Views::new(centers, observers)?
-        .with_max_distances(reach)
-        .map(Some)
-}
-
-/// Positions of the observers in the list of keyframes; observers that the map does not hold are left out.
-fn observer_indices(map: &Map, observers: &[slam_bridge::KeyFrameId]) -> Vec<usize> {
-    observers
-        .iter()
-        .filter_map(|id| {
-            map.keyframes
-                .binary_search_by_key(id, |keyframe| keyframe.id)
-                .ok()
-        })
-        .collect()
 }
 
 fn proven_free(
@@ -366,7 +334,11 @@ fn rays(map: &Map, kept: &[usize], meters_per_unit: f64) -> Vec<Ray> {
         let Some(point) = map.points.get(index) else {
             continue;
         };
-        for keyframe in observer_indices(map, &point.observers) {
+        for keyframe in point
+            .observers
+            .iter()
+            .filter_map(|&id| map.keyframe_index(id))
+        {
             seen[keyframe].push(index);
             witnesses[index] += 1;
         }

@@ -1,6 +1,6 @@
 //! A sparse map: points, keyframes, which keyframe saw which point, and what a map unit is worth.
 
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Similarity3, Vector3};
 
 /// Identity of a map point, stable while its map's [`Map::epoch`] stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -150,13 +150,76 @@ impl Map {
         !self.keyframes.is_empty() && self.points.iter().any(|point| !point.observers.is_empty())
     }
 
+    /// Where in [`Map::keyframes`] the keyframe with this id is. Cost: a binary search.
+    #[must_use]
+    pub fn keyframe_index(&self, id: KeyFrameId) -> Option<usize> {
+        self.keyframes
+            .binary_search_by_key(&id, |keyframe| keyframe.id)
+            .ok()
+    }
+
     /// The keyframe with this id. Cost: a binary search.
     #[must_use]
     pub fn keyframe(&self, id: KeyFrameId) -> Option<&KeyFrame> {
-        let index = self
-            .keyframes
-            .binary_search_by_key(&id, |keyframe| keyframe.id)
-            .ok()?;
-        self.keyframes.get(index)
+        self.keyframes.get(self.keyframe_index(id)?)
+    }
+
+    /// Takes everything in the map to another frame and unit: points, viewing directions, recognition distances,
+    /// keyframes. A known [`Map::scale`] follows, so that lengths in metres stay what they were; the epoch stays.
+    /// Cost: O(points + keyframes).
+    ///
+    /// ```
+    /// use slam_bridge::{Map, Scale, nalgebra::Similarity3};
+    /// let mut map = Map::from_positions([[1.0, 0.0, 0.0]]);
+    /// map.scale = Scale::MetersPerUnit(2.0);
+    /// map.transform(&Similarity3::from_scaling(2.0)); // to metres
+    /// assert_eq!(map.positions(), [[2.0, 0.0, 0.0]]);
+    /// assert_eq!(map.scale, Scale::MetersPerUnit(1.0));
+    /// ```
+    pub fn transform(&mut self, to: &Similarity3<f64>) {
+        let rotation = to.isometry.rotation;
+        for point in &mut self.points {
+            point.position = to * point.position;
+            point.viewing_direction = point.viewing_direction.map(|way| rotation * way);
+            point.max_distance = point.max_distance.map(|length| to.scaling() * length);
+        }
+        for keyframe in &mut self.keyframes {
+            let center = to * keyframe.center();
+            let orientation = rotation * keyframe.world_from_camera.rotation;
+            keyframe.world_from_camera = Isometry3::from_parts(center.coords.into(), orientation);
+        }
+        if let Scale::MetersPerUnit(meters) = &mut self.scale {
+            *meters /= to.scaling();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_transform_takes_along_all_that_has_a_place_or_a_length() {
+        let mut map = Map::from_positions([[1.0, 2.0, 3.0]]);
+        map.points[0].viewing_direction = Some(Vector3::x());
+        map.points[0].max_distance = Some(5.0);
+        let pose = Isometry3::new(Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.4, 0.0, 0.2));
+        map.keyframes = vec![KeyFrame {
+            id: KeyFrameId(7),
+            time: None,
+            world_from_camera: pose,
+        }];
+        let in_camera = pose.inverse() * map.points[0].position;
+        let half_turn = Vector3::z() * std::f64::consts::PI;
+        map.transform(&Similarity3::new(Vector3::x(), half_turn, 3.0));
+        let (point, keyframe) = (&map.points[0], &map.keyframes[0]);
+        assert!((point.position - Point3::new(-2.0, -6.0, 9.0)).norm() < 1e-12);
+        assert!((point.viewing_direction.unwrap() + Vector3::x()).norm() < 1e-12);
+        assert_eq!(point.max_distance, Some(15.0));
+        let seen = keyframe.world_from_camera.inverse() * point.position;
+        assert!((seen.coords - in_camera.coords * 3.0).norm() < 1e-12);
+        assert_eq!(map.scale, Scale::Unknown);
+        assert_eq!(map.keyframe_index(KeyFrameId(7)), Some(0));
+        assert_eq!(map.keyframe_index(KeyFrameId(0)), None);
     }
 }

@@ -1,7 +1,8 @@
 //! From the command line's INPUT to a map, and what lengths are worth in it.
 
+use explorer::map_views;
 use slam_bridge::nalgebra::Vector3;
-use slam_bridge::{KeyFrameId, Map, MapFileError, ReadError, Scale, read_map};
+use slam_bridge::{Map, MapFileError, ReadError, Scale, read_map};
 use sparse_to_obstacles::Ray;
 use submodular_minimax::Views;
 
@@ -145,26 +146,7 @@ impl LoadedMap {
                 .transpose()
                 .map_err(|error| Failure::new(error, "give another --position"));
         }
-        let centers = self
-            .map
-            .keyframes
-            .iter()
-            .map(|keyframe| keyframe.center().into())
-            .collect();
-        let place = |id: &KeyFrameId| {
-            self.map
-                .keyframes
-                .binary_search_by_key(id, |keyframe| keyframe.id)
-                .ok()
-        };
-        let observers = self.map.points.iter();
-        let observers = observers
-            .map(|point| point.observers.iter().filter_map(place).collect())
-            .collect();
-        let reach = self.map.points.iter().map(|point| point.max_distance);
-        Views::new(centers, observers)
-            .and_then(|views| views.with_max_distances(reach.collect()))
-            .map(Some)
+        map_views(&self.map)
             .map_err(|error| Failure::new(error, "correct keyframes.csv and observations.csv"))
     }
 

@@ -32,23 +32,13 @@ impl Epoch {
     /// and network give metres.
     pub(crate) fn place(&mut self, world: &Similarity3<f64>) {
         let poses = self.poses.iter_mut().map(|pose| &mut pose.pose);
-        let keyframes = self.map.keyframes.iter_mut();
-        let keyframes = keyframes.map(|keyframe| &mut keyframe.world_from_camera);
         let seen = self.edges.iter_mut().map(|(pose, _)| pose);
-        for pose in poses.chain(keyframes).chain(seen) {
+        for pose in poses.chain(seen) {
             let centre = world * Point3::from(pose.translation.vector);
             pose.rotation = world.isometry.rotation * pose.rotation;
             pose.translation = centre.coords.into();
         }
-        for point in &mut self.map.points {
-            point.position = world * point.position;
-            if let Some(direction) = &mut point.viewing_direction {
-                *direction = world.isometry.rotation * *direction;
-            }
-            if let Some(distance) = &mut point.max_distance {
-                *distance *= world.scaling();
-            }
-        }
+        self.map.transform(world);
         self.map.scale = Scale::MetersPerUnit(1.0);
     }
 
