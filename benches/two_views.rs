@@ -1,7 +1,7 @@
 //! Cost of the steps from two pictures to their relative motion: features, matches, alignment, pose.
 //!
 //! The pictures show smoothed noise at four depths, seen by a camera that moved to the right. Matching is run with and
-//! without predicted places, alignment with the patch that is the default and with a smaller one.
+//! without predicted places and by two indices, alignment with the patch that is the default and with a smaller one.
 
 #![allow(clippy::expect_used, reason = "inputs are made here and must be good")]
 #![allow(
@@ -12,8 +12,9 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use edge_slam::camera::PinholeCamera;
 use edge_slam::feature::{
-    AlignConfig, Features, GuidedConfig, MatchConfig, OrbExtractor, Prediction, align_matches,
-    match_descriptors, match_guided,
+    AlignConfig, Features, GuidedConfig, MatchConfig, MultiIndex, OrbExtractor, Prediction,
+    Vocabulary, VocabularyConfig, align_matches, match_by_node, match_descriptors, match_guided,
+    match_indexed,
 };
 use edge_slam::image::{GrayImage, gaussian_blur};
 use edge_slam::nalgebra::Point2;
@@ -73,6 +74,25 @@ fn steps(c: &mut Criterion) {
     });
     group.bench_function("matches of all pairs", |bench| {
         bench.iter(|| match_descriptors(&a.descriptors, &b.descriptors, &config));
+    });
+    let rng = &mut Pcg64::seed_from_u64(1);
+    let descriptors = [&a.descriptors[..], &b.descriptors[..]];
+    let words = VocabularyConfig::default();
+    let vocabulary = Vocabulary::train(&descriptors, &words, rng).expect("descriptors");
+    group.bench_function(
+        "matches by node of a vocabulary, indices included",
+        |bench| {
+            bench.iter(|| {
+                let [first, second] = descriptors.map(|side| vocabulary.direct_index(side, 1));
+                match_by_node(&first, &second, &config)
+            });
+        },
+    );
+    group.bench_function("matches by multi-index, indices included", |bench| {
+        bench.iter(|| {
+            let [first, second] = descriptors.map(MultiIndex::new);
+            match_indexed(&first, &second, &config)
+        });
     });
     let predictions = predictions(a);
     group.bench_function("matches near predicted places", |bench| {

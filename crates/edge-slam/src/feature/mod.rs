@@ -18,6 +18,10 @@ pub use brief::Descriptor;
 pub use config::{OrbConfig, OrbConfigError, Selection};
 pub use fast::{Corner, fast_corners};
 pub use klt::{KltConfig, klt_pyramid, track_points};
-pub use matching::{GuidedConfig, Match, MatchConfig, Prediction, match_descriptors, match_guided};
+pub use matching::{
+    BagOfWords, DirectIndex, GuidedConfig, Match, MatchConfig, MultiIndex, Prediction, Vocabulary,
+    VocabularyConfig, VocabularyError, match_by_node, match_descriptors, match_guided,
+    match_indexed,
+};
 pub use orb::{Features, Keypoint, OrbExtractor};
 pub use spread::spread_corners;

@@ -1,95 +1,7 @@
-//! Nearest descriptors by Hamming distance, over all candidates or near a predicted place.
+//! Hamming matching near predicted places: a grid of keypoints, so that a prediction looks at few of them.
 
-use super::{Descriptor, Keypoint};
-use crate::simd::{Kernel, widest};
-
-/// A pair of descriptors that look alike.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Match {
-    /// Index into the first slice.
-    pub first: usize,
-    /// Index into the second slice.
-    pub second: usize,
-    /// Differing bits.
-    pub distance: u32,
-}
-
-/// Which nearest neighbours count as matches.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MatchConfig {
-    /// Greatest distance, bits, 0..=256. Default 64.
-    pub max_distance: u32,
-    /// The nearest must be less than this times as far as the second nearest, 0..=1; 1 accepts all but
-    /// ties. Default 0.8 (Lowe 2004).
-    pub ratio: f64,
-    /// Whether the nearest of the nearest must be the start again. Default true.
-    pub mutual: bool,
-}
-
-impl Default for MatchConfig {
-    fn default() -> Self {
-        Self {
-            max_distance: 64,
-            ratio: 0.8,
-            mutual: true,
-        }
-    }
-}
-
-/// For each descriptor of `first` its nearest in `second`, where that is a match; ascending by `first`.
-///
-/// Ties in distance go to the lower index (and fail any ratio below 1). Empty slices give no match.
-/// Cost: O(n m), about 1 ns per pair.
-#[must_use]
-pub fn match_descriptors(
-    first: &[Descriptor],
-    second: &[Descriptor],
-    config: &MatchConfig,
-) -> Vec<Match> {
-    let mut reverse = vec![Nearest::default(); second.len()];
-    let mut forward = vec![Nearest::default(); first.len()];
-    widest(Compare {
-        first,
-        second,
-        forward: &mut forward,
-        reverse: &mut reverse,
-    });
-    let accepted = forward.iter().enumerate().filter_map(|(index, nearest)| {
-        let found = nearest.accept(index, config)?;
-        (!config.mutual || reverse[found.second].index == index).then_some(found)
-    });
-    accepted.collect()
-}
-
-/// Offers every pair to both of its descriptors.
-struct Compare<'a> {
-    first: &'a [Descriptor],
-    second: &'a [Descriptor],
-    forward: &'a mut [Nearest],
-    reverse: &'a mut [Nearest],
-}
-
-impl Kernel for Compare<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self {
-            first,
-            second,
-            forward,
-            reverse,
-        } = self;
-
-        for (index, (query, best)) in first.iter().zip(forward).enumerate() {
-            for (other, (candidate, back)) in second.iter().zip(&mut *reverse).enumerate() {
-                let distance = query.distance(candidate);
-                best.offer(other, distance);
-                back.offer(index, distance);
-            }
-        }
-    }
-}
+use super::{Match, MatchConfig, Nearest};
+use crate::feature::{Descriptor, Keypoint};
 
 /// How predicted places restrict matching.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -173,47 +85,6 @@ pub fn match_guided(
     free
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Nearest {
-    index: usize,
-    distance: u32,
-    second: u32,
-}
-
-impl Default for Nearest {
-    fn default() -> Self {
-        Self {
-            index: usize::MAX,
-            distance: u32::MAX,
-            second: u32::MAX,
-        }
-    }
-}
-
-impl Nearest {
-    #[inline(always)]
-    fn offer(&mut self, index: usize, distance: u32) {
-        if distance < self.distance {
-            self.second = self.distance;
-            self.distance = distance;
-            self.index = index;
-        } else if distance < self.second {
-            self.second = distance;
-        }
-    }
-
-    fn accept(&self, first: usize, config: &MatchConfig) -> Option<Match> {
-        let near = self.index != usize::MAX && self.distance <= config.max_distance;
-        let clear = self.second == u32::MAX
-            || f64::from(self.distance) < config.ratio * f64::from(self.second);
-        (near && clear).then_some(Match {
-            first,
-            second: self.index,
-            distance: self.distance,
-        })
-    }
-}
-
 /// Keypoints by square cells, so that a circle needs a look at nine of them.
 struct KeypointGrid {
     cell: f64,
@@ -285,6 +156,7 @@ impl KeypointGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::feature::match_descriptors;
     use proptest::prelude::*;
 
     fn descriptors(max: usize) -> impl Strategy<Value = Vec<Descriptor>> {
@@ -292,26 +164,6 @@ mod tests {
     }
 
     proptest! {
-        #[test]
-        fn agrees_with_brute_force(a in descriptors(12), b in descriptors(12)) {
-            let config = MatchConfig { max_distance: 128, ratio: 0.99, mutual: true };
-            let mut expected = Vec::new();
-            for (i, x) in a.iter().enumerate() {
-                let mut order: Vec<usize> = (0..b.len()).collect();
-                order.sort_by_key(|&j| (x.distance(&b[j]), j));
-                let Some(&j) = order.first() else { continue };
-                let distance = x.distance(&b[j]);
-                let clear = order.get(1).is_none_or(|&k| {
-                    f64::from(distance) < 0.99 * f64::from(x.distance(&b[k]))
-                });
-                let back = (0..a.len()).min_by_key(|&k| (a[k].distance(&b[j]), k));
-                if clear && distance <= 128 && back == Some(i) {
-                    expected.push(Match { first: i, second: j, distance });
-                }
-            }
-            prop_assert_eq!(match_descriptors(&a, &b, &config), expected);
-        }
-
         #[test]
         fn guidance_by_a_huge_radius_is_plain_matching(a in descriptors(9), b in descriptors(9)) {
             let keypoint = |i: usize| Keypoint { x: i as f32 * 9.0, y: 3.0, angle: 0.0, response: 1.0, octave: 0 };
