@@ -105,7 +105,7 @@ impl Shared {
     /// Where the drone was first tracked in this epoch, map units.
     pub(super) fn first_place(&self) -> Option<Point3<f64>> {
         let epoch = self.knowledge.epoch();
-        let mut trail = self.knowledge.trail().iter();
+        let mut trail = self.knowledge.trail().poses().iter();
         let first = trail.find(|frame| frame.epoch == epoch)?;
         Some(Point3::from(first.world_from_camera.translation.vector))
     }
@@ -136,6 +136,7 @@ impl Shared {
         for frame in self
             .knowledge
             .trail()
+            .poses()
             .iter()
             .rev()
             .filter(|frame| frame.epoch == epoch)
@@ -155,10 +156,27 @@ impl Shared {
     pub(super) fn begin_scan(&mut self) {
         self.follow_epoch();
         let position = self.knowledge.tracked_position();
+        let frames = self.knowledge.trail().poses().len();
         self.scans.push(Scan {
             time: self.knowledge.now(),
             position,
+            frame: position.and(frames.checked_sub(1)),
         });
+    }
+
+    /// Moves all that is remembered to where the map's keyframes are now.
+    pub(super) fn follow_map(&mut self, map: &Map) {
+        self.explored.follow_map(map);
+        self.knowledge.follow_map(map);
+        for scan in &mut self.scans {
+            let frame = scan
+                .frame
+                .and_then(|at| self.knowledge.trail().poses().get(at));
+            scan.position = frame.map(|frame| {
+                let place = frame.world_from_camera.translation.vector.into();
+                (frame.epoch, place)
+            });
+        }
     }
 
     pub(super) fn follow_epoch(&mut self) {
@@ -192,5 +210,52 @@ impl Shared {
         let radius = scene.units(self.config.flying_radius_m(meters));
         let end: Point3<f64> = pose.position + pose.up * scene.units(meters);
         scene.motion_is_free(&pose.position, &end, radius)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::Drawn;
+    use super::*;
+    use nalgebra::{Isometry3, Vector3};
+    use slam_bridge::{KeyFrame, KeyFrameId};
+
+    /// A map of one keyframe that stands `meters` along x.
+    fn map(meters: f64) -> Map {
+        Map {
+            keyframes: vec![KeyFrame {
+                id: KeyFrameId(1),
+                time: None,
+                world_from_camera: Isometry3::translation(meters, 0.0, 0.0),
+            }],
+            ..Map::default()
+        }
+    }
+
+    #[test]
+    fn a_corrected_map_moves_the_scans_the_way_home_and_home() {
+        let mut drawn = Drawn::new(&["#######", "#a...b#", "#######"]);
+        let start = drawn.place('a');
+        let far = drawn.place('b');
+        drawn.with_context(|context, _| context.begin_scan());
+        drawn.fly_to(far, &Vector3::x());
+        drawn.with_context(|context, scene| {
+            context.follow_map(&map(0.0));
+            context.follow_map(&map(3.0));
+            let moved = Vector3::new(3.0, 0.0, 0.0);
+            let places = [context.first_scan(), context.first_place()];
+            for place in places {
+                assert!(
+                    (place.unwrap() - (start + moved)).norm() < 1e-9,
+                    "{place:?}"
+                );
+            }
+            let way: Vec<Point3<f64>> = context.way_came(scene).iter().map(|&p| p.into()).collect();
+            assert!((way[0] - (far + moved)).norm() < 1e-9, "{way:?}");
+            assert!(
+                (way.last().unwrap() - (start + moved)).norm() < 1e-9,
+                "{way:?}"
+            );
+        });
     }
 }

@@ -170,7 +170,7 @@ fn is_known(shared: &Shared, scene: &Scene, place: &Point3<f64>) -> bool {
 fn views(shared: &Shared, scene: &Scene) -> Vec<(Point3<f64>, Vector3<f64>)> {
     let epoch = shared.knowledge.epoch();
     let mut views: Vec<(Point3<f64>, Vector3<f64>)> = Vec::new();
-    let trail = shared.knowledge.trail().iter();
+    let trail = shared.knowledge.trail().poses().iter();
     for frame in trail.filter(|frame| frame.epoch == epoch) {
         let position = Point3::from(frame.world_from_camera.translation.vector);
         let forward = frame.world_from_camera.rotation * Vector3::z();

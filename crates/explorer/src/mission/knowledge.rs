@@ -3,22 +3,12 @@
 use core::time::Duration;
 
 use nalgebra::{Isometry3, Point3, Vector3};
-use slam_bridge::{SlamUpdate, TrackingState};
+use slam_bridge::{Map, SlamUpdate, TrackingState};
 use tello_sdk::Telemetry;
 
+use super::trail::{Trail, TrailPose};
 use crate::calibration::Calibration;
 use crate::heading::LevelPose;
-
-/// One tracked frame of the flight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrailPose {
-    /// When, on the caller's clock.
-    pub time: Duration,
-    /// The map's epoch that the pose belongs to.
-    pub epoch: u64,
-    /// Camera-to-world, map units.
-    pub world_from_camera: Isometry3<f64>,
-}
 
 /// The latest of everything.
 #[derive(Debug, Clone, Default)]
@@ -30,7 +20,7 @@ pub(super) struct Knowledge {
     epoch: u64,
     untracked_since: Option<Duration>,
     calibration: Calibration,
-    trail: Vec<TrailPose>,
+    trail: Trail,
 }
 
 impl Knowledge {
@@ -139,7 +129,12 @@ impl Knowledge {
         self.calibration.add(commanded, measured);
     }
 
-    pub(super) fn trail(&self) -> &[TrailPose] {
+    pub(super) fn trail(&self) -> &Trail {
         &self.trail
+    }
+
+    /// Moves the flown path to where the map's keyframes are now.
+    pub(super) fn follow_map(&mut self, map: &Map) {
+        self.trail.follow_map(map);
     }
 }

@@ -31,6 +31,7 @@ mod spin;
 mod survey;
 mod take_off;
 mod think;
+mod trail;
 
 use core::time::Duration;
 
@@ -45,7 +46,6 @@ use context::{Context, Shared};
 pub use event::{Event, Goal, Logged};
 use explored::Explored;
 use knowledge::Knowledge;
-pub use knowledge::TrailPose;
 use landing::Landing;
 pub use outcome::Outcome;
 use phase::{Phase, Step};
@@ -55,6 +55,7 @@ pub use record::{Cycle, MissionRecord, Scan};
 use recover::Recover;
 use take_off::TakeOff;
 use think::Think;
+pub use trail::TrailPose;
 
 /// Commands that fail in a row before the mission gives up and lands.
 const MOST_FAILURES: usize = 6;
@@ -208,7 +209,7 @@ impl Mission {
             cycles: &self.shared.cycles,
             sites: self.shared.explored.graph(),
             scene: self.shared.scene.as_deref(),
-            trail: self.shared.knowledge.trail(),
+            trail: self.shared.knowledge.trail().poses(),
             meters_per_unit: self.shared.knowledge.meters_per_unit(),
             up: self.shared.knowledge.up().into(),
             log: &self.shared.log,

@@ -7,8 +7,8 @@ use exit_finder::sites::SiteGraph;
 use nalgebra::Point3;
 
 use super::event::{Goal, Logged};
-use super::knowledge::TrailPose;
 use super::outcome::Outcome;
+use super::trail::TrailPose;
 use crate::scene::Scene;
 
 /// One turn on the spot.
@@ -18,6 +18,8 @@ pub struct Scan {
     pub time: Duration,
     /// Epoch and position, map units; `None` when the pose was unknown.
     pub position: Option<(u64, Point3<f64>)>,
+    /// The frame of [`MissionRecord::trail`] at which it began; `None` when the pose was unknown.
+    pub frame: Option<usize>,
 }
 
 /// One pass of clean, exits, obstacles, plan, refine.
@@ -56,7 +58,7 @@ pub struct MissionRecord<'a> {
     pub sites: &'a SiteGraph,
     /// The last scene.
     pub scene: Option<&'a Scene>,
-    /// Every tracked frame.
+    /// Every tracked frame, where the latest map's keyframes put it.
     pub trail: &'a [TrailPose],
     /// Metres per map unit, if measured.
     pub meters_per_unit: Option<f64>,

@@ -62,7 +62,7 @@ impl Think {
         let Some(map) = context.map.take() else {
             return Step::NeedMap;
         };
-        context.explored.follow_map(&map);
+        context.follow_map(&map);
         let Some(scene) = look(context, &map, &pose) else {
             return self.failed(context);
         };
@@ -321,6 +321,7 @@ fn presence(context: &Context<'_>, pose: &LevelPose, meters_per_unit: f64) -> Ve
     for frame in context
         .knowledge
         .trail()
+        .poses()
         .iter()
         .filter(|frame| frame.epoch == epoch)
     {
@@ -353,7 +354,7 @@ fn presence(context: &Context<'_>, pose: &LevelPose, meters_per_unit: f64) -> Ve
 fn register(context: &mut Context<'_>, scene: &Scene, report: &exit_finder::ExitReport) {
     let shared = &mut *context.shared;
     let epoch = shared.knowledge.epoch();
-    let frames = shared.knowledge.trail().iter();
+    let frames = shared.knowledge.trail().poses().iter();
     let trail: Vec<[f64; 3]> = frames
         .filter(|frame| frame.epoch == epoch)
         .map(|frame| frame.world_from_camera.translation.vector.into())
