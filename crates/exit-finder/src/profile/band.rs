@@ -1,9 +1,11 @@
 //! Which heights count.
 
+use super::polar::{BLOCK, Block, Eye};
 use super::statistics::median_of_bits;
 use super::strip::Strip;
 use super::survey::Survey;
 use crate::config::HeightBand;
+use crate::points::PointLike;
 
 /// At which height a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,17 +67,56 @@ impl Band {
     /// Where a point lies that has this offset from the agent and this height above it.
     #[inline]
     pub(crate) fn layer_of(&self, offset: [f64; 2], range: f64, height: f64) -> Layer {
-        let Some([from, to]) = self.heights else {
+        let Some(heights) = self.heights else {
             return Layer::Level;
         };
         let height = height - self.strip.height_at(offset, range);
-        let widened = self.widening * range;
-        let level = height >= from && height <= to;
-        let band = height >= from.min(-widened) && height <= to.max(widened);
-        // A look-up instead of branches, which would be mispredicted at every other point.
-        let outside = 1 + usize::from(!band) * (1 + usize::from(height <= 0.0));
-        LAYERS[usize::from(!level) * outside]
+        LAYERS[usize::from(code(height, heights, self.widening * range))]
     }
+}
+
+impl Band {
+    /// Adds the layers of points with these ranges, 0 for points without a bearing. To the last bit [`Band::layer_of`] of each.
+    pub(crate) fn add_layers<P: PointLike>(
+        &self,
+        points: &[P],
+        ranges: &[f64],
+        eye: &Eye,
+        layers: &mut Vec<Option<Layer>>,
+    ) {
+        let Some(heights) = self.heights else {
+            layers.extend(
+                ranges
+                    .iter()
+                    .map(|&range| (range > 0.0).then_some(Layer::Level)),
+            );
+            return;
+        };
+        let mut block = Block::default();
+        for (points, ranges) in points.chunks(BLOCK).zip(ranges.chunks(BLOCK)) {
+            block.place(eye, points);
+            let mut known = [0.0; BLOCK];
+            known[..ranges.len()].copy_from_slice(ranges);
+            let mut codes = [0u8; BLOCK];
+            for k in 0..BLOCK {
+                let strip = self.strip.height_at([block.x[k], block.y[k]], known[k]);
+                codes[k] = code(block.height[k] - strip, heights, self.widening * known[k]);
+            }
+            let layer =
+                |(&code, &range): (&u8, &f64)| (range > 0.0).then_some(LAYERS[usize::from(code)]);
+            layers.extend(codes.iter().zip(ranges).map(layer));
+        }
+    }
+}
+
+/// The place in [`LAYERS`] of a point this high above the middle of the strip. Without branches, which would be mispredicted at every
+/// other point.
+#[inline]
+fn code(height: f64, [from, to]: [f64; 2], widened: f64) -> u8 {
+    let level = (height >= from) & (height <= to);
+    let band = (height >= from.min(-widened)) & (height <= to.max(widened));
+    let outside = 1 + u8::from(!band) * (1 + u8::from(height <= 0.0));
+    u8::from(!level) * outside
 }
 
 #[cfg(test)]

@@ -55,9 +55,9 @@ impl RangeProfile {
             let kept = kept.iter().map(|&point| point.into());
             kept.chain(doubtful.iter().copied())
         };
-        let survey = Survey::of(points(), (&eye, &edges), config.bins, &mut counts);
+        let survey = Survey::of(kept, doubtful, (&eye, &edges), &mut counts);
         let band = Band::of(config.band, &survey);
-        let mut layers = survey.layers(points(), &eye, &band);
+        let mut layers = survey.layers(kept, doubtful, &eye, &band);
         let mut ranges = survey.in_band(&layers);
         counts.used = ranges.len();
         counts.outside_band = layers.iter().flatten().count() - counts.used;

@@ -46,6 +46,11 @@ impl Edges {
         }
     }
 
+    /// Number of bins.
+    pub(crate) fn n(&self) -> usize {
+        self.directions.len() - 1
+    }
+
     /// A bin next to the true one at most.
     #[inline]
     fn guess(&self, direction: [f64; 2]) -> usize {

@@ -65,8 +65,7 @@ impl LiveProfile {
         let eye = Eye::new(agent, plane)?;
         let edges = Edges::new(config.bins);
         let mut ignored = PointCounts::default();
-        let all = points.iter().copied();
-        let survey = Survey::of(all, (&eye, &edges), config.bins, &mut ignored);
+        let survey = Survey::of(points, &[], (&eye, &edges), &mut ignored);
         let band = Band::of(config.band, &survey);
         let mut live = Self {
             eye,
@@ -270,16 +269,22 @@ mod tests {
             .collect()
     }
 
-    #[test]
-    fn updates_equal_a_rebuild() {
+    fn level_with_a_band() -> (AffinePlane, ExitConfig) {
         let plane = AffinePlane::from_up([0.0, 0.0, 1.0], [0.0; 3]).unwrap();
+        let band = HeightBand::Absolute {
+            from: -0.2,
+            to: 0.25,
+        };
         let config = ExitConfig {
-            band: HeightBand::Absolute {
-                from: -0.2,
-                to: 0.25,
-            },
+            band,
             ..Default::default()
         };
+        (plane, config)
+    }
+
+    #[test]
+    fn updates_equal_a_rebuild() {
+        let (plane, config) = level_with_a_band();
         let points = cloud(500);
         let mut live = LiveProfile::new(&points[..300], [0.0; 3], &plane, &config).unwrap();
         for &point in &points[300..] {
@@ -307,14 +312,7 @@ mod tests {
 
     #[test]
     fn what_is_not_there_is_not_removed_and_changes_nothing() {
-        let plane = AffinePlane::from_up([0.0, 0.0, 1.0], [0.0; 3]).unwrap();
-        let config = ExitConfig {
-            band: HeightBand::Absolute {
-                from: -0.2,
-                to: 0.25,
-            },
-            ..Default::default()
-        };
+        let (plane, config) = level_with_a_band();
         let mut points = cloud(100);
         points.push([2.0, 0.0, 0.0]);
         points.push([0.0, -1.5, 1.0]);

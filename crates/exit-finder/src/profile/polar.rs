@@ -4,6 +4,7 @@ use super::PointCounts;
 use super::edges::Edges;
 use crate::error::ExitError;
 use crate::plane::AffinePlane;
+use crate::points::PointLike;
 use crate::vector::is_finite;
 
 /// A point as the agent sees it.
@@ -75,5 +76,66 @@ impl Eye {
             height,
             bin: edges.bin_of([dx, dy]) as u32,
         })
+    }
+}
+
+/// Points that are looked at together.
+pub(crate) const BLOCK: usize = 64;
+
+/// Offsets of several points, coordinate by coordinate, so that the compiler computes some of them at once. To the last bit what
+/// [`Eye::look`] says of each.
+#[derive(Debug)]
+pub(crate) struct Block {
+    pub(crate) x: [f64; BLOCK],
+    pub(crate) y: [f64; BLOCK],
+    pub(crate) height: [f64; BLOCK],
+    pub(crate) range: [f64; BLOCK],
+    pub(crate) slope: [f64; BLOCK],
+    squared: [f64; BLOCK],
+}
+
+impl Default for Block {
+    fn default() -> Self {
+        let zero = [0.0; BLOCK];
+        Self {
+            x: zero,
+            y: zero,
+            height: zero,
+            range: zero,
+            slope: zero,
+            squared: zero,
+        }
+    }
+}
+
+impl Block {
+    /// Offsets and heights of up to [`BLOCK`] points.
+    pub(crate) fn place<P: PointLike>(&mut self, eye: &Eye, points: &[P]) {
+        let slots = self.x.iter_mut().zip(&mut self.y).zip(&mut self.height);
+        for (((x, y), height), &point) in slots.zip(points) {
+            ([*x, *y], *height) = eye.offset(point.into());
+        }
+    }
+
+    /// The same, their ranges and slopes.
+    pub(crate) fn look<P: PointLike>(&mut self, eye: &Eye, points: &[P]) {
+        self.place(eye, points);
+        for k in 0..BLOCK {
+            self.squared[k] = self.x[k] * self.x[k] + self.y[k] * self.y[k];
+            self.range[k] = self.squared[k].sqrt();
+            self.slope[k] = self.height[k] / self.range[k];
+        }
+    }
+
+    /// Whether a point has a bearing; counts it in `counts` when not.
+    #[inline]
+    pub(crate) fn has_bearing(&self, k: usize, counts: &mut PointCounts) -> bool {
+        let squared = self.squared[k];
+        if !(squared + self.height[k].abs()).is_finite() {
+            counts.non_finite += 1;
+            return false;
+        }
+        counts.at_agent += usize::from(squared <= 0.0);
+        squared > 0.0
     }
 }
