@@ -17,7 +17,7 @@ use crate::subset::Subset;
 /// Exact minimisation of any submodular function, with a duality gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MinNormPoint {
-    /// Stops when the gap is below this times max(1, |value|), above 0; 1e-9.
+    /// Stops when the gap is at most this times the largest gain of an element met so far, above 0; 1e-9.
     pub tolerance: f64,
     /// Major cycles at most, at least 1; 10,000.
     pub max_iterations: usize,
@@ -69,6 +69,8 @@ impl Minimizer for MinNormPoint {
             weights: vec![1.0],
         };
         let mut x = base.point.clone();
+        // Every inner product is taken in this unit, so that squares neither overflow nor vanish.
+        let mut unit = largest(&base.point);
         let mut best = Minimum {
             set: base.set.clone(),
             value: base.value,
@@ -86,15 +88,17 @@ impl Minimizer for MinNormPoint {
             {
                 (best.value, best.set) = (base.value, base.set.clone());
             }
-            let scale = dot(&x, &x).max(dot(&base.point, &base.point)).max(1e-300);
-            let stuck = dot(&x, &x) - dot(&x, &base.point) <= 1e-14 * scale;
-            if best.gap() <= self.tolerance * best.value.abs().max(1.0) || stuck {
+            unit = unit.max(largest(&base.point));
+            let [square, descent] = [&x, &base.point].map(|to| dot(&x, to, unit));
+            let scale = square.max(dot(&base.point, &base.point, unit));
+            let stuck = square - descent <= ROUNDING * scale;
+            if best.gap() <= self.tolerance * unit || stuck {
                 best.stop = MinimizeStop::Optimal;
                 break;
             }
             corral.bases.push(base.point);
             corral.weights.push(0.0);
-            x = corral.nearest(n);
+            x = corral.nearest(n, unit);
         }
         Ok(best)
     }
@@ -152,9 +156,9 @@ struct Corral {
 
 impl Corral {
     /// Wolfe's minor cycles: the point of least norm in the convex hull, dropping idle bases.
-    fn nearest(&mut self, n: usize) -> Vec<f64> {
+    fn nearest(&mut self, n: usize, unit: f64) -> Vec<f64> {
         loop {
-            let Some(affine) = self.affine_weights() else {
+            let Some(affine) = self.affine_weights(unit) else {
                 self.drop_at(self.bases.len() - 1);
                 return self.point(n);
             };
@@ -204,23 +208,19 @@ impl Corral {
     }
 
     /// Weights of the point of least norm in the affine hull; `None` if the bases are dependent.
-    fn affine_weights(&self) -> Option<Vec<f64>> {
+    fn affine_weights(&self, unit: f64) -> Option<Vec<f64>> {
         let m = self.bases.len();
-        let scale = self
-            .bases
-            .iter()
-            .map(|b| dot(b, b))
-            .fold(0.0, f64::max)
-            .max(1e-300);
+        let squares = self.bases.iter().map(|b| dot(b, b, unit));
+        let scale = squares.fold(f64::MIN_POSITIVE, f64::max);
         let mut rows: Vec<Vec<f64>> = (0..m)
             .map(|i| {
-                let entry = |j: usize| dot(&self.bases[i], &self.bases[j]) / scale + 1.0;
+                let entry = |j: usize| dot(&self.bases[i], &self.bases[j], unit) / scale + 1.0;
                 (0..m).map(entry).chain([1.0]).collect()
             })
             .collect();
         let solution = solve(&mut rows)?;
         let total: f64 = solution.iter().sum();
-        (total.abs() > 1e-300).then(|| solution.iter().map(|s| s / total).collect())
+        (total.abs() > f64::MIN_POSITIVE).then(|| solution.iter().map(|s| s / total).collect())
     }
 }
 
@@ -236,7 +236,7 @@ fn solve(rows: &mut [Vec<f64>]) -> Option<Vec<f64>> {
             }
         };
         let pivot = (column + 1..m).fold(column, larger);
-        if rows[pivot][column].abs() < 1e-13 {
+        if rows[pivot][column].abs() < DEPENDENT {
             return None;
         }
         rows.swap(column, pivot);
@@ -258,9 +258,46 @@ fn solve(rows: &mut [Vec<f64>]) -> Option<Vec<f64>> {
     Some(x)
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// Inner product in units of `unit`, which is not below any entry; 0 where all entries are.
+fn dot(a: &[f64], b: &[f64], unit: f64) -> f64 {
+    let unit = unit.max(f64::MIN_POSITIVE);
+    a.iter().zip(b).map(|(a, b)| (a / unit) * (b / unit)).sum()
+}
+
+fn largest(point: &[f64]) -> f64 {
+    point.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }
 
 /// A convex weight below which a base is dropped.
 const IDLE: f64 = 1e-12;
+/// A pivot of the bases' inner products below this is rounding: the bases are dependent.
+const DEPENDENT: f64 = 1e-13;
+/// A descent below this part of the squares is rounding.
+const ROUNDING: f64 = 1e-14;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::functions::{GraphCut, Modular, Sparse, WeightedSum};
+    use crate::minimize::BruteForce;
+
+    #[test]
+    fn values_of_any_size_are_minimised_alike() {
+        let edges = |w: f64| vec![vec![(1, w), (2, w)], vec![(0, w)], vec![(0, w)]];
+        for size in [1e-200, 1e-9, 1.0, 1e150, 1e200, 1e300] {
+            let cut = GraphCut::new(Sparse::new(edges(2.0 * size), 3).unwrap()).unwrap();
+            let weights = [-3.0, 1.0, -1.5].map(|weight| weight * size).to_vec();
+            let modular = Modular {
+                constant: 0.0,
+                weights,
+            };
+            let sum: WeightedSum<'_> =
+                WeightedSum::new(vec![(1.0, Box::new(&cut)), (1.0, Box::new(&modular))]).unwrap();
+            let found = MinNormPoint::default().minimize(&sum).unwrap();
+            let exact = BruteForce.minimize(&sum).unwrap();
+            assert_eq!(found.set, exact.set, "{size:e}");
+            assert!(found.lower_bound <= exact.value, "{size:e} {found:?}");
+            assert!(found.gap() <= 1e-8 * size, "{size:e} {found:?}");
+        }
+    }
+}
