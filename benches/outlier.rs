@@ -42,7 +42,7 @@ fn outlier(criterion: &mut Criterion) {
         });
         if n <= 10_000 {
             let engine = OutlierConfig {
-                solver: Solver::Engine,
+                solver: Solver::IterativeXGrowing,
                 ..default.clone()
             };
             group.bench_with_input(BenchmarkId::new("iterations", n), &points, |b, points| {

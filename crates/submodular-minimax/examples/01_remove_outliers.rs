@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     points.push([1.0, 1.0, 4.0]);
     points.extend((0..5).map(|i| [2.0, 2.0 + 0.05 * f64::from(i), 2.0]));
 
-    for solver in [Solver::ClosedForm, Solver::Engine] {
+    for solver in [Solver::ClosedForm, Solver::IterativeXGrowing] {
         let config = OutlierConfig {
             solver,
             ..OutlierConfig::default()

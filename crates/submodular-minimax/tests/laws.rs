@@ -99,6 +99,8 @@ proptest! {
         ]).unwrap();
         assert_submodular!(&sum);
         assert_submodular!(&Restriction::new(&sum, &[1], vec![5, 0, 3]).unwrap());
+        let doubled = Restriction::new(&sum, &[1], vec![5, 1, 5]).unwrap();
+        prop_assert_eq!(laws::growth(&doubled, 1e-9), None);
         assert_jointly_submodular!(&Split::new(sum, 3));
     }
 

@@ -54,7 +54,7 @@ proptest! {
                 max_representatives: k, beta: Beta::Fixed(beta),
                 lambda: preset.lambda * 2.0 / (1.0 + beta), ..preset
             };
-            let engine = OutlierConfig { solver: Solver::Engine, ..closed.clone() };
+            let engine = OutlierConfig { solver: Solver::IterativeXGrowing, ..closed.clone() };
             let a = remove_outliers(&points, Some(&views), &closed).unwrap();
             let b = remove_outliers(&points, Some(&views), &engine).unwrap();
             prop_assert_eq!(&a.removed, &b.removed, "{:?}", closed.reading);
@@ -275,6 +275,7 @@ fn clouds_without_spacing_are_kept_whole() {
         for config in presets() {
             let found = remove_outliers(&points, None, &config).unwrap();
             assert!(found.removed.is_empty() && found.kept.len() == points.len());
+            assert_eq!(found.stop, StopReason::NoSpacing, "{:?}", config.reading);
         }
     }
 }
@@ -326,15 +327,15 @@ fn the_source_of_depths_is_told_by_points_that_one_camera_sees() {
     };
     let (few, many) = (once(100), once(10));
     assert_eq!(
-        run(&few, DepthSource::Told),
+        run(&few, DepthSource::Observed),
         run(&few, DepthSource::Triangulated)
     );
     assert_eq!(
-        run(&many, DepthSource::Told),
+        run(&many, DepthSource::Observed),
         run(&many, DepthSource::Measured)
     );
     assert_ne!(
-        run(&few, DepthSource::Told).scores,
+        run(&few, DepthSource::Observed).scores,
         run(&few, DepthSource::Measured).scores
     );
 }
@@ -451,7 +452,7 @@ fn the_number_of_threads_does_not_matter() {
         for (views, solver) in [
             (None, Solver::ClosedForm),
             (Some(&views), Solver::ClosedForm),
-            (Some(&views), Solver::Engine),
+            (Some(&views), Solver::IterativeXGrowing),
         ] {
             let config = OutlierConfig {
                 solver,

@@ -5,6 +5,17 @@ use crate::set_function::{Growth, SetFunction};
 use crate::subset::Subset;
 
 /// f(S) = Σ of the weights of the items that some chosen set contains. Monotone submodular.
+///
+/// A gain costs the length of the element's list and one bit an item.
+///
+/// ```
+/// use submodular_minimax::{SetFunction, Subset, functions::Coverage};
+/// let rooms_seen_from = vec![vec![0, 1], vec![1, 2]];
+/// let area = Coverage::new(rooms_seen_from, vec![12.0, 9.0, 20.0])?;
+/// assert_eq!(area.value(&Subset::from_indices(2, [1])), 29.0);
+/// assert_eq!(area.value(&Subset::full(2)), 41.0);
+/// # Ok::<(), submodular_minimax::functions::FunctionError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coverage {
     sets: Vec<Vec<usize>>,

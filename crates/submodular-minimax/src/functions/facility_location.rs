@@ -8,7 +8,17 @@ use crate::subset::Subset;
 /// f(S) = Σ_v weight(v) min(cap(v), max_{u ∈ S} s(u, v)). Monotone submodular, f(∅) = 0.
 ///
 /// Plain without caps and weights; truncated with caps, which is the max-min side of Eq. (1): its
-/// best response to Y costs Σ min(m_v(Y), λ_v).
+/// best response to Y costs Σ min(m_v(Y), λ_v). A gain costs one row of s; over points there is
+/// [`FacilityLocation::greedy`], which computes few of them.
+///
+/// ```
+/// use submodular_minimax::functions::{Dense, FacilityLocation};
+/// use submodular_minimax::maximize::{LazyGreedy, Maximizer};
+/// let similarity = Dense::new(3, 2, vec![0.9, 0.1, 0.0, 0.8, 0.5, 0.5])?;
+/// let best = LazyGreedy::cardinality(2).maximize(&FacilityLocation::new(similarity))?;
+/// assert_eq!(best.picks, [0, 1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct FacilityLocation<S> {
     similarity: S,

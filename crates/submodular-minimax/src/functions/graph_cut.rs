@@ -5,7 +5,15 @@ use super::similarity::{Similarity, Sparse};
 use crate::set_function::{Growth, SetFunction};
 use crate::subset::Subset;
 
-/// f(S) = Σ of the weights of the edges between S and the rest.
+/// f(S) = Σ of the weights of the edges between S and the rest. A gain costs the element's edges.
+///
+/// ```
+/// use submodular_minimax::{SetFunction, Subset, functions::{GraphCut, Sparse}};
+/// let edges = vec![vec![(1, 2.0)], vec![(0, 2.0), (2, 3.0)], vec![(1, 3.0)]];
+/// let cut = GraphCut::new(Sparse::new(edges, 3)?)?;
+/// assert_eq!(cut.value(&Subset::from_indices(3, [1])), 5.0);
+/// # Ok::<(), submodular_minimax::functions::FunctionError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphCut {
     weights: Sparse,

@@ -13,6 +13,23 @@ pub struct Modular {
 }
 
 impl Modular {
+    /// The zero function of `ground` elements.
+    #[must_use]
+    pub fn zero(ground: usize) -> Self {
+        Self {
+            constant: 0.0,
+            weights: vec![0.0; ground],
+        }
+    }
+
+    /// Adds `factor` times another modular function of the same elements.
+    pub fn add_scaled(&mut self, factor: f64, other: &Self) {
+        self.constant += factor * other.constant;
+        for (weight, more) in self.weights.iter_mut().zip(&other.weights) {
+            *weight += factor * more;
+        }
+    }
+
     /// The smallest minimiser: exactly the elements of negative weight.
     #[must_use]
     pub fn minimizer(&self) -> Subset {

@@ -34,6 +34,9 @@ pub enum StopReason {
     ClosedForm,
     /// The allowed number of iterations was reached first.
     IterationLimit,
+    /// Of [`remove_outliers`](crate::remove_outliers) alone: fewer than five points, or most of them identical, so that
+    /// there is no spacing to measure by and all are kept.
+    NoSpacing,
 }
 
 /// Settings of the iterating minimax algorithms.

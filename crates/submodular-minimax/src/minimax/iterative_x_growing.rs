@@ -9,6 +9,15 @@
 //! 7  until X′ᵢ ⊆ Xᵢ₋₁, then return Xᵢ₋₁
 //! ```
 //!
+//! Let τ = min over X of max over Y of f(X ∪ Y), X* a set that reaches it, f ≥ 0 jointly submodular and ∅ an
+//! allowed response.
+//! - f(X* ∪ Xᵢ) ≤ (1 + i/β) τ. For i = 0: X₀ minimises f, hence f(X₀ ∪ X*) ≤ f(X*) ≤ τ. Then: X′ᵢ minimises the
+//!   submodular gᵢ of line 5, hence gᵢ(X′ᵢ ∪ X*) ≤ gᵢ(X*); drop the second term on the left and use f(X* ∪ Yᵢ) ≤ τ.
+//! - f(Xᵢ) ≤ f(X* ∪ Xᵢ₋₁) + τ/β, from gᵢ(X′ᵢ) ≤ gᵢ(X*) in the same way.
+//! - At the end, X′ ⊆ X: f(X ∪ Y) ≤ f(X) + f(X′ ∪ Y) − f(X′) ≤ f(X) + (β + 1) τ by submodularity and line 5.
+//!
+//! Together, with Y no worse than α times the worst response, in T rounds: max over Y of f(X ∪ Y) ≤ (2 + T/β + β) τ / α.
+//!
 //! Cost: at most |N₁| + 1 rounds of one oracle call and one minimisation each, whatever oracle and minimiser answer.
 
 use super::solution::{MinimaxError, MinimaxSolution, finish, minimize, response_bound};
@@ -23,7 +32,25 @@ use crate::subset::Subset;
 /// Approximates min over X of max over Y of a jointly submodular f ≥ 0.
 ///
 /// `oracle` answers line 4, `minimizer` lines 1 and 5; where the function is modular in X the closed
-/// form is taken instead. Guarantee: max over Y of f(X ∪ Y) ≤ (2 + T/β + β) τ / α.
+/// form is taken instead. Guarantee: max over Y of f(X ∪ Y) ≤ (2 + T/β + β) τ / α after T rounds; what holds for
+/// the solution itself, its [`Certificate`](super::Certificate) says.
+///
+/// ```
+/// use submodular_minimax::functions::{Dense, Representation};
+/// use submodular_minimax::maximize::LazyGreedy;
+/// use submodular_minimax::minimax::iterative_x_growing;
+/// use submodular_minimax::minimize::MinNormPoint;
+/// use submodular_minimax::{MinimaxConfig, StopReason};
+/// // Four places in a row; whoever stands there himself pays 0.2, the others what the worst demand takes.
+/// let loss = Dense::from_fn(4, 4, |u, v| 1.0 / (1.0 + u.abs_diff(v) as f64))?;
+/// let function = Representation::new(loss, vec![0.2; 4], 0.0)?;
+/// let mut worst = LazyGreedy::cardinality(1);
+/// let found =
+///     iterative_x_growing(&function, &mut worst, &MinNormPoint::default(), &MinimaxConfig::paper())?;
+/// assert_eq!((found.x.len(), found.stop), (4, StopReason::Exhausted));
+/// assert!(found.value <= found.certificate.upper_bound);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// Settings out of range, whatever the oracle or the minimiser reports.

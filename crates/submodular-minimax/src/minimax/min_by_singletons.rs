@@ -1,4 +1,8 @@
-//! Min-by-Singletons: minimise f(X) + Σᵤ f(X ∪ {u}), which bounds every response from above.
+//! Min-by-Singletons: minimise h(X) = f(X) + Σᵤ f(X ∪ {u}), which bounds every response from above.
+//!
+//! f(X ∪ Y) ≤ f(X) + Σ over u ∈ Y of [f(X ∪ {u}) − f(X)] ≤ h(X), by submodularity in Y and f ≥ 0; and each of the
+//! |N₂| + 1 terms of h(X) is at most max over Y of f(X ∪ Y), as long as ∅ and single elements are allowed responses.
+//! Cost: one minimisation of a sum of |N₂| + 1 functions.
 
 use super::solution::{MinimaxError, MinimaxSolution, finish, minimize};
 use crate::StopReason;
@@ -55,18 +59,9 @@ impl<F: JointFunction + ?Sized> SetFunction for Singletons<'_, F> {
     }
 
     fn as_modular(&self) -> Option<Modular> {
-        let n1 = self.function.x_size();
-        let mut sum = Modular {
-            constant: 0.0,
-            weights: vec![0.0; n1],
-        };
+        let mut sum = Modular::zero(self.function.x_size());
         for y in self.responses() {
-            let part = self.function.modular_given_y(&y)?;
-            sum.constant += part.constant;
-            sum.weights
-                .iter_mut()
-                .zip(&part.weights)
-                .for_each(|(s, p)| *s += p);
+            sum.add_scaled(1.0, &self.function.modular_given_y(&y)?);
         }
         Some(sum)
     }

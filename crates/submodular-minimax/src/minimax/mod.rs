@@ -3,7 +3,7 @@
 //! | function | needs | guarantee |
 //! | --- | --- | --- |
 //! | [`iterative_x_growing`] | joint submodularity, f ≥ 0 | (2 + T/β + β) / α of min-max, T iterations |
-//! | [`min_by_singletons`] | disjoint submodularity, f ≥ 0 | k + 1 of min-max for \|Y\| ≤ k |
+//! | [`min_by_singletons`] | disjoint submodularity, f ≥ 0 | \|N₂\| + 1 of min-max |
 //! | [`min_as_oracle`] | joint submodularity | the greedy factor of max-min, if monotone in Y |
 //! | [`best_response`] | nothing | none: a baseline |
 //! | [`max_then_min`] | nothing | none: a baseline |
@@ -11,7 +11,7 @@
 //! Every result carries a [`Certificate`] that bounds its distance from the optimum after the fact.
 //!
 //! Reference: arXiv 2305.16903 (minimax submodular optimisation), Algorithm 1 and
-//! Theorem 3.3 as the exploration paper cites them; the guarantees are re-derived in the README.
+//! Theorem 3.3 as the exploration paper cites them; the guarantees are derived again in each algorithm's file.
 
 mod baselines;
 mod certificate;

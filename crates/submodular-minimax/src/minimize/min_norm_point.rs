@@ -15,6 +15,19 @@ use crate::set_function::SetFunction;
 use crate::subset::Subset;
 
 /// Exact minimisation of any submodular function, with a duality gap.
+///
+/// ```
+/// use submodular_minimax::functions::{GraphCut, Modular, Sparse, WeightedSum};
+/// use submodular_minimax::minimize::{MinNormPoint, Minimizer};
+/// let edges = vec![vec![(1, 1.0)], vec![(0, 1.0), (2, 4.0)], vec![(1, 4.0)]];
+/// let cut = GraphCut::new(Sparse::new(edges, 3)?)?;
+/// let worth = Modular { constant: 0.0, weights: vec![0.5, -3.0, 1.0] };
+/// let energy = WeightedSum::new(vec![(1.0, Box::new(&cut)), (1.0, Box::new(&worth))])?;
+/// let least = MinNormPoint::default().minimize(&energy)?;
+/// assert_eq!(least.set.iter().collect::<Vec<_>>(), [0, 1, 2]);
+/// assert!(least.gap() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MinNormPoint {
     /// Stops when the gap is at most this times the largest gain of an element met so far, above 0; 1e-9.

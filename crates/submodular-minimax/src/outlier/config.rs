@@ -34,7 +34,7 @@ pub struct OutlierConfig {
     pub adaptive: bool,
     /// What is made of the observations in [`Reading::Rays`] and [`Reading::Ranged`].
     pub rays: RayConfig,
-    /// Closed form or the iterations of Algorithm 1.
+    /// Closed form or the iterations of Algorithm 1: the same set.
     pub solver: Solver,
 }
 
@@ -86,8 +86,8 @@ pub enum Reading {
 pub enum Solver {
     /// The set that Algorithm 1 ends with, computed directly; one pass.
     ClosedForm,
-    /// Iterative-X-Growing with a lazy greedy oracle, iteration by iteration.
-    Engine,
+    /// Algorithm 1 with a lazy greedy oracle, iteration by iteration.
+    IterativeXGrowing,
 }
 
 impl Default for RayConfig {
@@ -98,7 +98,7 @@ impl Default for RayConfig {
             max_cameras: 100,
             violation_cost: 0.05,
             neighbours: 20,
-            source: DepthSource::Told,
+            source: DepthSource::Observed,
             triangulated: Cues::triangulated(),
             measured: Cues::measured(),
             one_position: Cues::from_position(),
@@ -135,7 +135,7 @@ impl OutlierConfig {
             reading: Reading::Literal,
             lambda: 0.6,
             max_representatives: 4,
-            solver: Solver::Engine,
+            solver: Solver::IterativeXGrowing,
             ..Self::default()
         }
     }

@@ -13,7 +13,7 @@ pub enum DepthSource {
     /// As the observations tell. A point that a single camera position sees cannot have been triangulated: where
     /// one observed point in fifty is such, depths were measured. Shares found: none on fourteen maps of a single camera,
     /// 4 to 25 % on thirty-one of depth cameras. If all that is known is one position, neither is assumed.
-    Told,
+    Observed,
     /// By a single moving camera.
     Triangulated,
     /// By a depth camera, or a stereo pair.

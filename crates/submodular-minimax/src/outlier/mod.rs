@@ -86,6 +86,6 @@ pub fn remove_outliers<P: PointLike>(
     };
     match problem {
         Some(problem) => solve::solve(&problem, config),
-        None => Ok(OutlierRemoval::keep_all(n, StopReason::ClosedForm)),
+        None => Ok(OutlierRemoval::keep_all(n, StopReason::NoSpacing)),
     }
 }

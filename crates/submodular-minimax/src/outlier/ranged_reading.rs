@@ -101,7 +101,7 @@ fn ranges(cloud: &Cloud, sight: &Sight<'_>) -> Option<Vec<f64>> {
 fn weights<'a>(sight: &Sight<'_>, config: &'a OutlierConfig) -> &'a Cues {
     let rays = &config.rays;
     let source = match rays.source {
-        DepthSource::Told => told(sight),
+        DepthSource::Observed => told(sight),
         known => Some(known),
     };
     match source {

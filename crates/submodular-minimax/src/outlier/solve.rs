@@ -22,7 +22,7 @@ pub(super) fn solve(
     };
     let scores = problem.shortfalls();
     let n = scores.len();
-    if config.solver == Solver::Engine {
+    if config.solver == Solver::IterativeXGrowing {
         let settings = MinimaxConfig {
             beta: Beta::Fixed(problem.beta),
             ..Default::default()
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn points_that_only_reach_their_bar_are_removed_by_both_solvers() {
         let points: Vec<[f64; 3]> = (0..10).map(|i| [f64::from(i), 0.0, 0.0]).collect();
-        for solver in [Solver::ClosedForm, Solver::Engine] {
+        for solver in [Solver::ClosedForm, Solver::IterativeXGrowing] {
             let (reach, weight) = (2.0, vec![1.0; 10]);
             let problem = Problem {
                 graph: NeighbourGraph::new(&RangeTree::new(&points, &[]), 4, f64::INFINITY),
