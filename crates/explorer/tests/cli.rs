@@ -151,6 +151,35 @@ fn clean_says_so_when_nothing_is_left_and_withstands_absurd_points() {
 }
 
 #[test]
+fn clean_writes_a_score_a_point_and_says_when_it_judged_none() {
+    let folder = folder("clean-scores");
+    let input = file(&folder, "room.csv", &format!("{}40,40,40\n", room()));
+    let path = folder.join("scores.csv");
+    let scores = path.display().to_string();
+    let report = json(&["clean", &input, "--scores", &scores, "--json"]);
+    let text = fs::read_to_string(&path).expect("scores");
+    let removed: Vec<u64> = (text.lines().skip(1))
+        .filter_map(|line| line.split_once(','))
+        .filter(|(_, score)| score.parse::<f64>().expect("a score") >= 0.0)
+        .map(|(row, _)| row.parse().expect("a row"))
+        .collect();
+    assert_eq!(report["removed_indices"], Value::from(removed));
+    assert_eq!(text.lines().count() as u64 - 1, report["points"]);
+    let line = complaint(&["clean", &input, "--scores", &scores, "--method", "sor"]);
+    assert!(line.contains("a baseline gives no scores"), "{line}");
+    let refused = explorer(&["clean", &input, "-o", "kept.txt"]);
+    assert_eq!(refused.status.code(), Some(2));
+    for rows in [
+        "1,2,3\n4,5,6\n",
+        "1,1,1\n1,1,1\n1,1,1\n1,1,1\n1,1,1\n2,2,2\n",
+    ] {
+        let few = file(&folder, "few.csv", rows);
+        let told = String::from_utf8(explorer(&["clean", &few]).stdout).expect("text");
+        assert!(told.contains("none judged"), "{told}");
+    }
+}
+
+#[test]
 fn exits_finds_the_door() {
     let folder = folder("exits");
     let input = file(&folder, "room.csv", &room());

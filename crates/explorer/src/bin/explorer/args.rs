@@ -132,8 +132,11 @@ pub(crate) struct Clean {
     #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = vector)]
     pub(crate) position: Option<Vector>,
     /// Write the kept points.
-    #[arg(short, long, value_name = "KEPT.ply")]
+    #[arg(short, long, value_name = "KEPT.ply", value_parser = ply_file)]
     pub(crate) output: Option<PathBuf>,
+    /// Write row (from 0) and score of every point, to cut elsewhere: those at or above 0 are removed. Not for baselines.
+    #[arg(long, value_name = "SCORES.csv")]
+    pub(crate) scores: Option<PathBuf>,
     /// Repeat the work for a steadier time.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) repeat: u32,
@@ -206,7 +209,7 @@ pub(crate) struct Obstacles {
     #[arg(short, long, value_name = "HULLS.obj")]
     pub(crate) output: Option<PathBuf>,
     /// Write the centres of the proven-free voxels in which the body fits; needs observations.
-    #[arg(long, value_name = "FREE.ply")]
+    #[arg(long, value_name = "FREE.ply", value_parser = ply_file)]
     pub(crate) proven_free: Option<PathBuf>,
     /// Radius of the body that must fit, map units; as long as 0.15 m by default; 0 asks for its centre alone.
     #[arg(long, value_name = "r", value_parser = not_negative)]
@@ -330,6 +333,17 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a finite number above 0".to_owned()),
     }
+}
+
+/// The name says what is in the file, to whoever reads it next.
+fn ply_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let named = path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("ply"));
+    named
+        .then_some(path)
+        .ok_or_else(|| "points are written as PLY: name a file .ply".to_owned())
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

@@ -1,9 +1,11 @@
 //! `explorer clean`: which points of a map are outliers.
 
+use std::io::{self, Write};
+
 use explorer::baseline;
 use serde::Serialize;
 use slam_bridge::write_ply;
-use submodular_minimax::{OutlierConfig, remove_outliers};
+use submodular_minimax::{OutlierConfig, StopReason, remove_outliers};
 
 use crate::args::{Clean, CleanMethod, Output, Vector};
 use crate::failure::Failure;
@@ -31,6 +33,12 @@ pub(crate) struct CleanReport {
     pub(crate) certificate: Option<CertificateReport>,
     #[serde(skip)]
     pub(crate) kept_indices: Vec<usize>,
+    /// How suspicious each point is; none of a baseline.
+    #[serde(skip)]
+    scores: Option<Vec<f64>>,
+    /// The points give no length to tell outliers by.
+    #[serde(skip)]
+    without_spacing: bool,
 }
 
 /// The value reached lies between the best possible and `upper_bound`.
@@ -64,9 +72,21 @@ pub(crate) fn run(arguments: &Clean, output: &Output) -> Result<(), Failure> {
         let kept = loaded.map.with_points_at(&report.kept_indices);
         write_file(path, |file| write_ply(&kept, file))?;
     }
+    if let Some(path) = &arguments.scores {
+        let scores = report.scores.as_ref().ok_or_else(|| {
+            let advice = "leave --scores out or take a --method that is no baseline";
+            Failure::new("a baseline gives no scores", advice)
+        })?;
+        write_file(path, |file| write_scores(scores, file))?;
+    }
     deliver(output, &report, &text(&report), || {
         figure(&loaded, &report, arguments)
     })
+}
+
+fn write_scores(scores: &[f64], file: &mut impl Write) -> io::Result<()> {
+    writeln!(file, "row,score")?;
+    (scores.iter().enumerate()).try_for_each(|(row, score)| writeln!(file, "{row},{score}"))
 }
 
 /// Cleans `repeat` times, which gives the same result each time.
@@ -116,6 +136,8 @@ fn removal(
         iterations: None,
         certificate: None,
         kept_indices: removal.kept,
+        scores: None,
+        without_spacing: false,
     })
 }
 
@@ -140,14 +162,20 @@ fn minimax(
         iterations: Some(removal.iterations),
         certificate: Some(certificate),
         kept_indices: removal.kept,
+        scores: Some(removal.scores),
+        without_spacing: removal.stop == StopReason::NoSpacing,
     })
 }
 
 /// "kept 4,239 of 4,460 points (95.0 %)".
 pub(crate) fn text(report: &CleanReport) -> String {
     let share = 100.0 * report.kept as f64 / report.points.max(1) as f64;
+    let judged = match report.without_spacing {
+        true => ", none judged: fewer than five points, or most of them in one place",
+        false => "",
+    };
     format!(
-        "kept {} of {} points ({share:.1} %) in {:.3} s",
+        "kept {} of {} points ({share:.1} %) in {:.3} s{judged}",
         report.kept, report.points, report.seconds
     )
 }
