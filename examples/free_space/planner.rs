@@ -23,11 +23,11 @@ pub(crate) struct Planner {
     pub(crate) hulls: usize,
     /// Among hulls and in proven free space. Places are voxels of the truth's size.
     pub(crate) proven: Open,
-    /// Outliers and points that rays contradict.
+    /// Outliers and points that rays contradict: those of no hull.
     pub(crate) dropped: usize,
 }
 
-/// Outliers and contradicted points go; the others are hulls and the surface of proven free space.
+/// Outliers and contradicted points make no hulls; proven free space keeps away from outliers too, as in the export.
 pub(crate) fn measured(
     map: &AlignedMap,
     surface: &Surface,
@@ -45,10 +45,14 @@ pub(crate) fn measured(
         ..FreeSpaceConfig::default()
     };
     let nothing: [[f64; 3]; 0] = [];
-    let mut free = FreeSpace::from_rays(map.rays(kept.iter().copied()), &nothing, &config)?;
-    let solid = kept.iter().map(|&i| map.points[i]);
-    let solid: Vec<[f64; 3]> = solid.filter(|&point| !free.contradicts(point)).collect();
-    free.insert([], &solid)?;
+    let mut free = FreeSpace::from_rays(map.all_rays(), &nothing, &config)?;
+    let uncontradicted = |points: Vec<[f64; 3]>| -> Vec<[f64; 3]> {
+        let points = points.into_iter();
+        points.filter(|&point| !free.contradicts(point)).collect()
+    };
+    let surface_points = uncontradicted(map.points.clone());
+    let solid = uncontradicted(kept.iter().map(|&i| map.points[i]).collect());
+    free.insert([], &surface_points)?;
     let clusters = (kept.len() / POINTS_PER_CLUSTER).clamp(1, solid.len().max(1));
     let hulls = hulls(&solid, clusters)?;
     let open = |space: Space<'_>, places: &[[f64; 3]]| {

@@ -283,7 +283,9 @@ fn true_surfaces_of_a_kitchen_stay_closed() {
     let (hulls, proven) = (planner.hulls, planner.proven);
     println!("plan: hulls only {hulls}, {proven:?}");
     assert!(
-        hulls * 3 > surface && proven.surface * 1_000 <= surface,
+        hulls * 3 > surface && proven.surface * 2_000 <= surface,
         "{hulls}, {proven:?}"
     );
+    // Outliers that rays do not contradict cost no more than the export loses by them.
+    assert!(proven.places >= 3_000, "{proven:?}");
 }

@@ -55,9 +55,11 @@ pub(crate) fn surroundings(
 ) -> Result<Surroundings, Failure> {
     let mut points = at(&loaded.points, kept);
     let clusters = check_clusters(clusters, points.len())?;
-    let config = free_space_config(units_per_meter);
-    let (free, free_space) = timed(|| prove(loaded, kept, &mut points, &config));
+    let (free, free_space) = timed(|| prove(loaded, units_per_meter));
     let free = free?;
+    if let Some(free) = &free {
+        points.retain(|point| !free.contradicts(*point));
+    }
     let (obstacles, kmeans, hulls) = hulls(&points, clusters.min(points.len()), seed)?;
     Ok(Surroundings {
         obstacles,
@@ -70,8 +72,7 @@ pub(crate) fn surroundings(
     })
 }
 
-/// What `explorer obstacles` measures: all points as obstacles, and free space that keeps a distance
-/// from every one of them that rays do not contradict.
+/// What `explorer obstacles` measures: all points as obstacles, and the same proven-free space.
 pub(crate) fn measured_surroundings(
     loaded: &LoadedMap,
     clusters: usize,
@@ -80,10 +81,7 @@ pub(crate) fn measured_surroundings(
 ) -> Result<Surroundings, Failure> {
     let points = &loaded.points;
     let clusters = check_clusters(Some(clusters), points.len())?;
-    let config = free_space_config(units_per_meter);
-    let all: Vec<usize> = (0..points.len()).collect();
-    let mut solid = points.clone();
-    let (free, free_space) = timed(|| prove(loaded, &all, &mut solid, &config));
+    let (free, free_space) = timed(|| prove(loaded, units_per_meter));
     let free = free?;
     let (obstacles, kmeans, hulls) = hulls(points, clusters, seed)?;
     Ok(Surroundings {
@@ -125,22 +123,23 @@ fn hulls(
     Ok((set, seconds, hull_seconds))
 }
 
-/// Proven-free space from the rays to the points with these indices, for a map with observations. `points` keeps those
-/// that the rays do not contradict, and they are its surface.
-fn prove(
-    loaded: &LoadedMap,
-    indices: &[usize],
-    points: &mut Vec<[f64; 3]>,
-    config: &FreeSpaceConfig,
-) -> Result<Option<FreeSpace>, Failure> {
+/// Proven-free space of a map with observations, for the export and for paths alike: from the rays to all points, keeping away
+/// from every point that the rays do not contradict.
+///
+/// Outliers take part. A true point among them would leave triangles that reach past it and a surface that nothing keeps away
+/// from; a wrong one proves nothing alone, and opens nothing.
+fn prove(loaded: &LoadedMap, units_per_meter: f64) -> Result<Option<FreeSpace>, Failure> {
     if !loaded.map.has_observations() {
         return Ok(None);
     }
+    let config = free_space_config(units_per_meter);
+    let points = &loaded.points;
     let nothing: [[f64; 3]; 0] = [];
-    let mut free = FreeSpace::from_rays(loaded.rays(indices.iter().copied()), &nothing, config)
+    let mut free = FreeSpace::from_rays(loaded.rays(0..points.len()), &nothing, &config)
         .map_err(|error| Failure::new(error, "give the map's unit with --scale"))?;
-    points.retain(|point| !free.contradicts(*point));
-    free.insert([], points).map_err(Failure::internal)?;
+    let solid = points.iter().copied();
+    let solid: Vec<[f64; 3]> = solid.filter(|&point| !free.contradicts(point)).collect();
+    free.insert([], &solid).map_err(Failure::internal)?;
     Ok(Some(free))
 }
 
