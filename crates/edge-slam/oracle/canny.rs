@@ -1,4 +1,4 @@
-//! Writes the Canny edges of images as PGM files, for the comparison in `canny.py`.
+//! Writes the Canny edges of images as PGM files, for the comparison in `peers.py`.
 //!
 //! Usage: canny l1|l2 LOW HIGH OUT_FOLDER IMAGE... ; no smoothing. Prints microseconds of processor time per image, the mean of several.
 #![allow(
@@ -13,7 +13,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use cpu_time::cpu_seconds;
+use cpu_time::mean_cpu_seconds;
 use edge_slam::edge::{CannyConfig, Norm, Thresholds, canny};
 use edge_slam::sequence::decode_gray;
 
@@ -38,12 +38,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     for (index, path) in arguments.enumerate() {
         let image = decode_gray(&std::fs::read(path)?)?;
-        let mut edges = canny(&image.view(), &config)?;
-        let start = cpu_seconds(origin);
-        for _ in 0..50 {
-            edges = canny(&image.view(), &config)?;
-        }
-        let mean = (cpu_seconds(origin) - start) / 50.0;
+        let (edges, mean) = mean_cpu_seconds(origin, 50, || canny(&image.view(), &config));
+        let edges = edges?;
         println!("{:.0}", mean * 1e6);
         let (width, height) = (edges.width(), edges.height());
         let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();

@@ -32,7 +32,7 @@ def main():
     frames, _, _ = orb.seven_scenes(Path(sys.argv[2]))
     pairs = [(i, i + gap) for i in range(0, 290, 60) for gap in (5, 10)]
     used = sorted({k for pair in pairs for k in pair})
-    result, _ = orb.ours(sys.argv[1], "balanced", [frames[k][0] for k in used])
+    result, _ = orb.ours([sys.argv[1]], "balanced", [frames[k][0] for k in used])
     bits = {k: np.unpackbits(words, axis=1).astype(np.int16) for k, (_, words) in zip(used, result)}
     random, kept, near, matches = np.random.default_rng(0), {}, 0, 0
     for i, j in pairs:

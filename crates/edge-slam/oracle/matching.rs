@@ -9,6 +9,7 @@
     clippy::print_stdout,
     clippy::disallowed_methods,
     clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
     reason = "a measuring program"
 )]
 
@@ -21,7 +22,7 @@ use std::io::BufReader;
 use std::path::Path;
 use std::time::Instant;
 
-use cpu_time::cpu_seconds;
+use cpu_time::mean_cpu_seconds;
 use edge_slam::evaluation::{TimedPose, associate};
 use edge_slam::feature::{
     Descriptor, Match, MatchConfig, MultiIndex, OrbExtractor, Vocabulary, VocabularyConfig,
@@ -74,10 +75,11 @@ fn main() -> Result<(), Failure> {
         ("the kitchen's first half", kitchen.every_fifth(half)),
         ("the other sequence", other.every_fifth(usize::MAX)),
     ] {
-        let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
-        let start = cpu_seconds(origin);
-        let vocabulary = Vocabulary::train(&images, &VocabularyConfig::default(), rng)?;
-        let seconds = cpu_seconds(origin) - start;
+        let (vocabulary, seconds) = mean_cpu_seconds(origin, 1, || {
+            let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+            Vocabulary::train(&images, &VocabularyConfig::default(), rng)
+        });
+        let vocabulary = vocabulary?;
         let count: usize = images.iter().map(|image| image.len()).sum();
         println!(
             "vocabulary of {name}: {} words from {count} descriptors in {seconds:.2} s",
@@ -102,17 +104,12 @@ fn pairs(frames: &Frames) -> Vec<[&[Descriptor]; 2]> {
         .collect()
 }
 
-/// Milliseconds of the work for all pairs, each in turn, and its results.
+/// Milliseconds of the work for a pair, and the results of all pairs.
 fn timed<P, R>(origin: Instant, pairs: &[P], work: impl Fn(&P) -> R) -> (f64, Vec<R>) {
-    // The kernel counts in steps of milliseconds: long stretches only.
-    let rounds = 10_usize.div_ceil(pairs.len());
-    let mut results = Vec::new();
-    let start = cpu_seconds(origin);
-    for _ in 0..rounds {
-        results = pairs.iter().map(&work).collect();
-    }
-    let spent = cpu_seconds(origin) - start;
-    (1e3 * spent / (rounds * pairs.len()) as f64, results)
+    let runs = 4_u32.div_ceil(pairs.len() as u32);
+    let (results, seconds) =
+        mean_cpu_seconds(origin, runs, || pairs.iter().map(&work).collect::<Vec<R>>());
+    (1e3 * seconds / pairs.len() as f64, results)
 }
 
 fn by_node(frames: &Frames, vocabulary: &Vocabulary, level: usize, origin: Instant) {

@@ -1,4 +1,4 @@
-//! Writes the ORB features of images as text, for the comparison in `orb.py`.
+//! Writes the ORB features of images as text, for the comparison in `peers.py`.
 //!
 //! Usage: orb balanced|spread|strongest COUNT IMAGE... ; prints per image a line "features N microseconds T" and N lines
 //! "x y octave w0 w1 w2 w3". The time is that on the processor, the mean of several.
@@ -13,7 +13,7 @@ mod cpu_time;
 use std::error::Error;
 use std::time::Instant;
 
-use cpu_time::cpu_seconds;
+use cpu_time::mean_cpu_seconds;
 use edge_slam::feature::{OrbConfig, OrbExtractor, Selection};
 use edge_slam::sequence::decode_gray;
 
@@ -34,12 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     })?;
     for path in arguments {
         let image = decode_gray(&std::fs::read(path)?)?;
-        let mut found = extractor.extract(&image.view());
-        let start = cpu_seconds(origin);
-        for _ in 0..10 {
-            found = extractor.extract(&image.view());
-        }
-        let mean = (cpu_seconds(origin) - start) / 10.0;
+        let (found, mean) = mean_cpu_seconds(origin, 10, || extractor.extract(&image.view()));
         println!(
             "features {} microseconds {:.0}",
             found.keypoints.len(),

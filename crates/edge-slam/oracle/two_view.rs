@@ -14,7 +14,7 @@ mod cpu_time;
 use std::error::Error;
 use std::time::Instant;
 
-use cpu_time::cpu_seconds;
+use cpu_time::mean_cpu_seconds;
 use edge_slam::camera::{Camera, PinholeCamera, RadialTangential};
 use edge_slam::feature::{
     AlignConfig, Features, Keypoint, MatchConfig, OrbExtractor, align_matches, match_descriptors,
@@ -47,20 +47,22 @@ fn main() -> Result<(), Box<dyn Error>> {
         if mode == "raw" {
             config.max_shift = -1.0;
         }
-        let (places, alignment) = timed(origin, || {
+        let (places, alignment) = mean_cpu_seconds(origin, 8, || {
             align_matches([&a.0.view(), &b.0.view()], keypoints, &matches, &config)
         });
         let pixel = |p: [f64; 2]| camera.undistort(&Point2::from(p)).unwrap_or_default();
         let first: Vec<_> = places.iter().map(|p| pixel(p.first)).collect();
         let second: Vec<_> = places.iter().map(|p| pixel(p.second)).collect();
-        let (found, micros) = timed(origin, || {
+        let (found, seconds) = mean_cpu_seconds(origin, 8, || {
             let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
             let config = TwoViewConfig::default();
             estimate_two_view(&first, &second, &camera.pinhole, &config, rng)
         });
         print!(
-            "pair {} microseconds {micros:.0} alignment {alignment:.0} ",
-            places.len()
+            "pair {} microseconds {:.0} alignment {:.0} ",
+            places.len(),
+            seconds * 1e6,
+            alignment * 1e6
         );
         print_motion(found.ok().as_ref());
         for (p, q) in first.iter().zip(&second) {
@@ -82,16 +84,6 @@ fn camera(numbers: &[String]) -> Result<Camera, Box<dyn Error>> {
         pinhole: PinholeCamera::new(fx, fy, cx, cy)?,
         distortion: RadialTangential { k1, k2, p1, p2, k3 },
     })
-}
-
-/// The last of eight results, and the mean microseconds on the processor.
-fn timed<R>(origin: Instant, mut work: impl FnMut() -> R) -> (R, f64) {
-    let start = cpu_seconds(origin);
-    let mut result = work();
-    for _ in 1..8 {
-        result = work();
-    }
-    (result, (cpu_seconds(origin) - start) / 8.0 * 1e6)
 }
 
 /// The rest of the pair's line, and the line of the motion.
