@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p submodular-minimax --example 02_measure_synthetic_clouds`
 //!
-//! Apartments from seeds (5 % to 25 % outliers, 10,000 to 100,000 points, clean ones too) and, if the
+//! Apartments from seeds (5 % to 25 % outliers, 1,000 to 100,000 points, clean ones too) and, if the
 //! data folder is there, the synthetic apartment that they imitate. Clean clouds show the
 //! false-positive rate. The last table gives the default's least, mean and largest F1 over ten seeds.
 //! Against what others use: `compare_outlier_removal --generated` in the workspace's examples.
@@ -56,7 +56,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Points and share of outliers.
-const KINDS: [(usize, f64); 6] = [
+const KINDS: [(usize, f64); 9] = [
+    (1_000, 0.15),
+    (2_000, 0.05),
+    (2_000, 0.25),
     (10_000, 0.05),
     (10_000, 0.15),
     (10_000, 0.25),
