@@ -13,7 +13,7 @@ mod source;
 mod tum;
 mod xyz;
 
-pub use files::{MapFileError, read_map, read_map_folder, write_map_folder};
+pub use files::{MOST_MAP_BYTES, MapFileError, read_map, read_map_folder, write_map_folder};
 pub use keyframes::{read_keyframes, write_keyframes};
 pub use map::{Frustum, KeyFrame, KeyFrameId, Map, MapPoint, PointId, Scale};
 pub use nalgebra;

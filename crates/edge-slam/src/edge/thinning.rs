@@ -25,62 +25,37 @@ pub(super) fn thin(view: &GrayView<'_>, norm: Norm, limits: [i32; 2]) -> Vec<u8>
         // No strength reaches 2^15 - 1, so that a higher threshold may be lowered to it.
         Norm::L1 => {
             let limits = limits.map(|limit| i16::try_from(limit).unwrap_or(i16::MAX));
-            widest(ThinBySums {
-                view,
-                limits,
-                class: &mut class,
-            });
+            thin_image(view, limits, &mut class);
         }
-        Norm::L2 => widest(ThinBySquares {
-            view,
-            limits,
-            class: &mut class,
-        }),
+        Norm::L2 => thin_image(view, limits, &mut class),
     }
     class
 }
 
-struct ThinBySums<'a> {
-    view: &'a GrayView<'a>,
-    limits: [i16; 2],
-    class: &'a mut [u8],
+fn thin_image<T: Strength>(view: &GrayView<'_>, limits: [T; 2], class: &mut [u8]) {
+    widest(Thin {
+        view,
+        limits,
+        class,
+    });
 }
 
-impl Kernel for ThinBySums<'_> {
-    type Output = ();
+/// A strength in the narrowest integer that holds it: sums of [`Norm::L1`] fit 16 bits, squares of [`Norm::L2`] do not.
+trait Strength: Copy + Default + PartialOrd {
+    fn of(gx: i16, gy: i16) -> Self;
+}
 
+impl Strength for i16 {
     #[inline(always)]
-    fn run(self) {
-        let Self {
-            view,
-            limits,
-            class,
-        } = self;
-
-        thin_image(view, limits, class, |x, y| x.abs() + y.abs());
+    fn of(gx: i16, gy: i16) -> Self {
+        gx.abs() + gy.abs()
     }
 }
 
-struct ThinBySquares<'a> {
-    view: &'a GrayView<'a>,
-    limits: [i32; 2],
-    class: &'a mut [u8],
-}
-
-impl Kernel for ThinBySquares<'_> {
-    type Output = ();
-
+impl Strength for i32 {
     #[inline(always)]
-    fn run(self) {
-        let Self {
-            view,
-            limits,
-            class,
-        } = self;
-
-        thin_image(view, limits, class, |x, y| {
-            strength(i32::from(x), i32::from(y), Norm::L2)
-        });
+    fn of(gx: i16, gy: i16) -> Self {
+        strength(gx.into(), gy.into(), Norm::L2)
     }
 }
 
@@ -99,35 +74,46 @@ struct Line<T> {
     strength: Vec<T>,
 }
 
-#[inline(always)]
-fn thin_image<T: Copy + Default + PartialOrd>(
-    view: &GrayView<'_>,
+struct Thin<'a, T> {
+    view: &'a GrayView<'a>,
     limits: [T; 2],
-    class: &mut [u8],
-    strength: impl Fn(i16, i16) -> T,
-) {
-    let (width, height) = (view.width(), view.height());
-    let mut lines: [Line<T>; 3] = core::array::from_fn(|_| Line {
-        gradient: GradientRow::new(width),
-        strength: vec![T::default(); width + 2],
-    });
-    for y in 0..=height {
-        let newest = &mut lines[2];
-        if y < height {
-            newest.gradient.compute(view, y);
-            let GradientRow { across, down, .. } = &newest.gradient;
-            let pairs = across.iter().zip(down);
-            for (to, (&gx, &gy)) in newest.strength[1..=width].iter_mut().zip(pairs) {
-                *to = strength(gx, gy);
+    class: &'a mut [u8],
+}
+
+impl<T: Strength> Kernel for Thin<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self {
+            view,
+            limits,
+            class,
+        } = self;
+
+        let (width, height) = (view.width(), view.height());
+        let mut lines: [Line<T>; 3] = core::array::from_fn(|_| Line {
+            gradient: GradientRow::new(width),
+            strength: vec![T::default(); width + 2],
+        });
+        for y in 0..=height {
+            let newest = &mut lines[2];
+            if y < height {
+                newest.gradient.compute(view, y);
+                let GradientRow { across, down, .. } = &newest.gradient;
+                let pairs = across.iter().zip(down);
+                for (to, (&gx, &gy)) in newest.strength[1..=width].iter_mut().zip(pairs) {
+                    *to = T::of(gx, gy);
+                }
+            } else {
+                newest.strength.fill(T::default());
             }
-        } else {
-            newest.strength.fill(T::default());
+            if y > 0 {
+                let start = y * (width + 2) + 1;
+                thin_row(&lines, limits, &mut class[start..start + width]);
+            }
+            lines.rotate_left(1);
         }
-        if y > 0 {
-            let start = y * (width + 2) + 1;
-            thin_row(&lines, limits, &mut class[start..start + width]);
-        }
-        lines.rotate_left(1);
     }
 }
 

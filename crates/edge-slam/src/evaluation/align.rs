@@ -93,20 +93,8 @@ pub fn align_points<P: Copy + Into<[f64; 3]>>(
     target: &[P],
     alignment: Alignment,
 ) -> Result<Similarity, EvaluationError> {
-    if source.len() != target.len() {
-        return Err(EvaluationError::LengthMismatch {
-            source_len: source.len(),
-            target_len: target.len(),
-        });
-    }
-    if alignment == Alignment::None {
+    if count_pairs([source.len(), target.len()], 3, alignment)? == 0 {
         return Ok(Similarity::identity());
-    }
-    if source.len() < 3 {
-        return Err(EvaluationError::TooFewPairs {
-            pairs: source.len(),
-            needed: 3,
-        });
     }
     let (source, target) = (columns(source)?, columns(target)?);
     let (source_mean, target_mean) = (mean(&source), mean(&target));
@@ -133,6 +121,28 @@ pub fn align_points<P: Copy + Into<[f64; 3]>>(
         motion: Isometry3::from_parts(translation.into(), rotation),
         scale,
     })
+}
+
+/// How many pairs there are to align, at least `needed`; 0 when there is nothing to align.
+pub(super) fn count_pairs(
+    [source_len, target_len]: [usize; 2],
+    needed: usize,
+    alignment: Alignment,
+) -> Result<usize, EvaluationError> {
+    if source_len != target_len {
+        return Err(EvaluationError::LengthMismatch {
+            source_len,
+            target_len,
+        });
+    }
+    match alignment {
+        Alignment::None => Ok(0),
+        Alignment::Se3 | Alignment::Sim3 if source_len >= needed => Ok(source_len),
+        Alignment::Se3 | Alignment::Sim3 => Err(EvaluationError::TooFewPairs {
+            pairs: source_len,
+            needed,
+        }),
+    }
 }
 
 fn columns<P: Copy + Into<[f64; 3]>>(points: &[P]) -> Result<Vec<Vector3<f64>>, EvaluationError> {

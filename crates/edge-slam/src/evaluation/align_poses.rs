@@ -12,7 +12,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-use super::align::{mean, rotation_between, usable};
+use super::align::{count_pairs, mean, rotation_between, usable};
 use super::{Alignment, EvaluationError, Similarity};
 
 /// The [`Similarity`] that takes `source` onto `target`: rotation from orientations, then scale and translation from positions.
@@ -41,20 +41,8 @@ pub fn align_poses(
     target: &[Isometry3<f64>],
     alignment: Alignment,
 ) -> Result<Similarity, EvaluationError> {
-    if source.len() != target.len() {
-        return Err(EvaluationError::LengthMismatch {
-            source_len: source.len(),
-            target_len: target.len(),
-        });
-    }
-    if alignment == Alignment::None {
+    if count_pairs([source.len(), target.len()], 1, alignment)? == 0 {
         return Ok(Similarity::identity());
-    }
-    if source.is_empty() {
-        return Err(EvaluationError::TooFewPairs {
-            pairs: 0,
-            needed: 1,
-        });
     }
     let (from, to) = (positions(source)?, positions(target)?);
     let mut agreement = Matrix3::zeros();

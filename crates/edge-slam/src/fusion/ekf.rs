@@ -5,128 +5,14 @@
 //! update    K = P Hᵀ (H P Hᵀ + R)⁻¹      x ← x + K y      P ← (I − K H) P (I − K H)ᵀ + K R Kᵀ
 //! ```
 //!
-//! Innovations of angles are wrapped; an innovation outside its 95 % gate is rejected, and after three rejections in
-//! a row the covariance grows tenfold, so that a filter that has gone astray finds back. A displacement of unknown scale is
-//! not linearised (see [`Ekf::update_odometry`]).
+//! An innovation outside its 95 % gate is rejected, and after three rejections in a row the covariance grows tenfold, so that a
+//! filter that has gone astray finds back. The measurements are in `update.rs`.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
-use super::displacement::predict_displacement;
-use super::measurement::{
-    AnchoredOdometry, AttitudeSample, FlightSample, VelocityFrame, VisualPose,
-};
-use super::state::{
-    NavigationState, StateCovariance, StateVector, rotation, rotation_slopes, wrap,
-};
-use super::{FusionError, ProcessNoise};
-
-/// Parameters of [`Ekf`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EkfConfig {
-    /// Process noise.
-    pub process: ProcessNoise,
-    /// Frame of the velocities. Default the body (the paper).
-    pub velocity_frame: VelocityFrame,
-    /// Standard deviations of the telemetry's roll, pitch and yaw, radians, > 0. Default 1, 1 and 3 degrees.
-    pub attitude_sigma: Vector3<f64>,
-    /// Standard deviation of visual positions at their anchor, metres, > 0. Default 0.03.
-    pub visual_sigma: f64,
-    /// Its growth per metre travelled, >= 0. Default 0.02.
-    pub visual_drift: f64,
-    /// Standard deviation of visual angles, radians, > 0. Default 1 degree.
-    pub visual_angle_sigma: f64,
-    /// Under this many inliers the visual covariance is four times as great. Default 50.
-    pub few_inliers: usize,
-    /// Pitch, radians, beyond which Euler angles are refused, in (0, π/2). Default 89 degrees.
-    pub steepest_pitch: f64,
-    /// Standard deviation of the log scale at the start, >= 0; 0 when the visual scale is known. Default 0.5.
-    pub initial_scale_sigma: f64,
-    /// Squared Mahalanobis length up to which an attitude is accepted, > 0; infinite for all. Default 7.81, 95 % of χ² with
-    /// 3 degrees of freedom.
-    pub attitude_gate: f64,
-    /// The same for a visual pose or displacement. Default 12.59, 95 % of χ² with 6 degrees of freedom. One good measurement
-    /// in twenty is refused, those on which the state is worst, so that the filter is a little too sure of itself.
-    pub visual_gate: f64,
-}
-
-impl Default for EkfConfig {
-    fn default() -> Self {
-        Self {
-            process: ProcessNoise::default(),
-            velocity_frame: VelocityFrame::Body,
-            attitude_sigma: Vector3::new(1.0, 1.0, 3.0).map(f64::to_radians),
-            visual_sigma: 0.03,
-            visual_drift: 0.02,
-            visual_angle_sigma: 1_f64.to_radians(),
-            few_inliers: 50,
-            steepest_pitch: 89_f64.to_radians(),
-            initial_scale_sigma: 0.5,
-            attitude_gate: 7.81,
-            visual_gate: 12.59,
-        }
-    }
-}
-
-impl EkfConfig {
-    /// Errs at the first field outside its range.
-    ///
-    /// # Errors
-    /// [`FusionError::Parameter`].
-    pub fn validate(&self) -> Result<(), FusionError> {
-        self.process.validate()?;
-        let positive = [
-            ("attitude_sigma", self.attitude_sigma.min()),
-            ("visual_sigma", self.visual_sigma),
-            ("visual_angle_sigma", self.visual_angle_sigma),
-            ("steepest_pitch", self.steepest_pitch),
-        ];
-        for (name, value) in positive {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(FusionError::Parameter {
-                    name,
-                    value,
-                    range: "positive",
-                });
-            }
-        }
-        let others = [
-            ("visual_drift", self.visual_drift),
-            ("initial_scale_sigma", self.initial_scale_sigma),
-        ];
-        for (name, value) in others {
-            if !(value >= 0.0 && value.is_finite()) {
-                return Err(FusionError::Parameter {
-                    name,
-                    value,
-                    range: "0 or more",
-                });
-            }
-        }
-        let gates = [
-            ("attitude_gate", self.attitude_gate),
-            ("visual_gate", self.visual_gate),
-        ];
-        if let Some((name, value)) = gates.into_iter().find(|(_, gate)| !(*gate > 0.0)) {
-            return Err(FusionError::Parameter {
-                name,
-                value,
-                range: "positive",
-            });
-        }
-        let value = self.steepest_pitch;
-        let below = value < core::f64::consts::FRAC_PI_2;
-        let range = "below a right angle";
-        if below {
-            Ok(())
-        } else {
-            Err(FusionError::Parameter {
-                name: "steepest_pitch",
-                value,
-                range,
-            })
-        }
-    }
-}
+use super::measurement::{FlightSample, VelocityFrame};
+use super::state::{NavigationState, StateCovariance, StateVector, rotation, rotation_slopes};
+use super::{EkfConfig, FusionError};
 
 /// What became of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -156,11 +42,11 @@ const INFLATION: f64 = 10.0;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ekf {
-    config: EkfConfig,
-    state: NavigationState,
-    covariance: StateCovariance,
-    time: f64,
-    fixed_at: f64,
+    pub(super) config: EkfConfig,
+    pub(super) state: NavigationState,
+    pub(super) covariance: StateCovariance,
+    pub(super) time: f64,
+    pub(super) fixed_at: f64,
     rejected: u32,
 }
 
@@ -278,122 +164,8 @@ impl Ekf {
         Ok(())
     }
 
-    /// Corrects the attitude with the telemetry's.
-    ///
-    /// # Errors
-    /// [`FusionError`] for angles that are not finite or too steep.
-    pub fn update_attitude(&mut self, sample: &AttitudeSample) -> Result<Outcome, FusionError> {
-        if !sample.angles.iter().all(|v| v.is_finite()) {
-            return Err(FusionError::NonFinite {
-                name: "the attitude sample",
-            });
-        }
-        self.check_pitch(sample.angles.y)?;
-        let innovation = (sample.angles - self.state.attitude).map(wrap);
-        let mut matrix = SMatrix::<f64, 3, 7>::zeros();
-        matrix.fixed_view_mut::<3, 3>(0, 3).fill_with_identity();
-        let noise = SMatrix::from_diagonal(&self.config.attitude_sigma.map(|s| s * s));
-        self.correct(&innovation, &matrix, &noise, self.config.attitude_gate)
-    }
-
-    /// Corrects position and attitude with a visual pose of known scale.
-    ///
-    /// # Errors
-    /// [`FusionError`] for numbers that are not finite or a pitch that is too steep.
-    pub fn update_visual(&mut self, pose: &VisualPose) -> Result<Outcome, FusionError> {
-        let numbers = pose.position.iter().chain(pose.attitude.iter());
-        if !(numbers.copied().all(f64::is_finite) && pose.distance.is_finite()) {
-            return Err(FusionError::NonFinite {
-                name: "the visual pose",
-            });
-        }
-        self.check_pitch(pose.attitude.y)?;
-        let position = pose.position - self.state.position;
-        let mut matrix = SMatrix::<f64, 6, 7>::zeros();
-        matrix.fixed_view_mut::<6, 6>(0, 0).fill_with_identity();
-        self.fix(position, pose.attitude, matrix, pose.distance, pose.inliers)
-    }
-
-    /// Corrects position, attitude and scale with a displacement d since an anchor, d = e⁻ˢ (R₀ᵀ (p − p₀) + n).
-    ///
-    /// A product of scale and position is not linear: the update uses its exact mean and covariance under what is known
-    /// before, instead of slopes at the state, so that the filter does not grow too sure of the scale.
-    ///
-    /// # Errors
-    /// [`FusionError`] for numbers that are not finite or a pitch that is too steep.
-    pub fn update_odometry(&mut self, odometry: &AnchoredOdometry) -> Result<Outcome, FusionError> {
-        let numbers = odometry
-            .anchor_position
-            .iter()
-            .chain(odometry.displacement.iter());
-        if !numbers
-            .chain(odometry.attitude.iter())
-            .all(|v| v.is_finite())
-        {
-            return Err(FusionError::NonFinite {
-                name: "the odometry",
-            });
-        }
-        self.check_pitch(odometry.attitude.y)?;
-        let back = odometry.anchor_rotation.inverse();
-        let way = back * (self.state.position - odometry.anchor_position);
-        let weak = self.weakness(odometry.inliers);
-        let noise = [self.config.visual_sigma, self.config.visual_drift].map(|s| weak * s * s);
-        let predicted = predict_displacement(&self.covariance, &way, back.matrix(), noise);
-        let angle = weak * self.config.visual_angle_sigma.powi(2);
-        let mut spread = predicted.spread;
-        (3..6).for_each(|k| spread[(k, k)] += angle);
-        let position = odometry.displacement * self.state.scale() - predicted.mean;
-        let angles = (odometry.attitude - self.state.attitude).map(wrap);
-        let innovation: SVector<f64, 6> =
-            SVector::from_iterator(position.iter().chain(&angles).copied());
-        let inverse = inverse_of(&spread)?;
-        let distance = innovation.dot(&(inverse * innovation));
-        let outcome = self.judge(distance, self.config.visual_gate);
-        if outcome.accepted {
-            let gain = predicted.cross * inverse;
-            let covariance = self.covariance - gain * predicted.cross.transpose();
-            self.accept(&(gain * innovation), &covariance)?;
-            self.fixed_at = self.time;
-        }
-        Ok(outcome)
-    }
-
-    /// By how much the covariance of a visual pose is greater when few matches support it.
-    fn weakness(&self, inliers: usize) -> f64 {
-        if inliers < self.config.few_inliers {
-            4.0
-        } else {
-            1.0
-        }
-    }
-
-    fn fix(
-        &mut self,
-        position: Vector3<f64>,
-        attitude: Vector3<f64>,
-        matrix: SMatrix<f64, 6, 7>,
-        distance: f64,
-        inliers: usize,
-    ) -> Result<Outcome, FusionError> {
-        let angles = (attitude - self.state.attitude).map(wrap);
-        let [x, y, z]: [f64; 3] = position.into();
-        let innovation = SVector::from([x, y, z, angles.x, angles.y, angles.z]);
-        let weak = self.weakness(inliers);
-        let p = weak
-            * (self.config.visual_sigma.powi(2)
-                + (self.config.visual_drift * distance.max(0.0)).powi(2));
-        let a = weak * self.config.visual_angle_sigma.powi(2);
-        let noise = SMatrix::from_diagonal(&SVector::from([p, p, p, a, a, a]));
-        let outcome = self.correct(&innovation, &matrix, &noise, self.config.visual_gate)?;
-        if outcome.accepted {
-            self.fixed_at = self.time;
-        }
-        Ok(outcome)
-    }
-
     /// One gated update in Joseph's form.
-    fn correct<const N: usize>(
+    pub(super) fn correct<const N: usize>(
         &mut self,
         innovation: &SVector<f64, N>,
         matrix: &SMatrix<f64, N, 7>,
@@ -415,7 +187,7 @@ impl Ekf {
     }
 
     /// Holds a distance against its gate; after several rejections in a row the filter doubts itself.
-    fn judge(&mut self, distance: f64, gate: f64) -> Outcome {
+    pub(super) fn judge(&mut self, distance: f64, gate: f64) -> Outcome {
         let accepted = distance.is_finite() && distance <= gate;
         if !accepted {
             self.rejected += 1;
@@ -431,7 +203,7 @@ impl Ekf {
         }
     }
 
-    fn accept(
+    pub(super) fn accept(
         &mut self,
         step: &StateVector,
         covariance: &StateCovariance,
@@ -470,7 +242,7 @@ impl Ekf {
         (rotation(&attitude) * velocity, slopes)
     }
 
-    fn check_pitch(&self, pitch: f64) -> Result<(), FusionError> {
+    pub(super) fn check_pitch(&self, pitch: f64) -> Result<(), FusionError> {
         if pitch.abs() <= self.config.steepest_pitch {
             return Ok(());
         }
@@ -480,7 +252,7 @@ impl Ekf {
     }
 }
 
-fn inverse_of<const N: usize>(
+pub(super) fn inverse_of<const N: usize>(
     spread: &SMatrix<f64, N, N>,
 ) -> Result<SMatrix<f64, N, N>, FusionError> {
     let factor = spread.cholesky().ok_or(FusionError::NonFinite {

@@ -31,6 +31,18 @@ pub enum MapFileError {
         /// The fault.
         source: ReadError,
     },
+    /// The file is larger than what is read of one, at once or when it is unpacked.
+    #[error(
+        "{}: more than the {most} bytes that are read of a file (unpacked); thin the map or split it, or call the \
+         format's reader (read_ply, read_pcd, read_xyz), which has no limit",
+        path.display()
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Bytes that are read at most.
+        most: u64,
+    },
     /// No reader goes with the name.
     #[error(
         "{}: no reader for this name; use .ply, .pcd, .csv, .xyz, .txt (each also with .gz) or a folder \
