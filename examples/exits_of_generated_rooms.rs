@@ -1,7 +1,7 @@
 //! Exits of generated rooms after the project's own outlier removal: precision, recall and silence at three outlier rates.
 //! Of a bare map, of which all that is known is the agent's position, and of one that tells which keyframe observes which point.
 //!
-//! `cargo run --release -p examples --example exits_of_generated_rooms [-- FIRST_SEED [ROOMS]]`
+//! `cargo run --release -p examples --example exits_of_generated_rooms [-- FIRST_SEED [ROOMS [bare|observed]]]`
 #![allow(clippy::print_stdout, reason = "an example prints its result")]
 
 #[path = "../crates/exit-finder/tests/generator/mod.rs"]
@@ -32,13 +32,11 @@ enum Knowing {
     NotCleaned,
     /// The agent's place is the viewpoint; distances are divided by this power of the range.
     Position(f64),
-    /// The observations, with the default weights of triangulated points.
+    /// The observations.
     Observations,
-    /// The observations, with the weights of a bare map and this power of the range.
-    Milder(f64),
 }
 
-use Knowing::{Milder, NotCleaned, Observations, Position};
+use Knowing::{NotCleaned, Observations, Position};
 
 /// By default, and with a higher power: far points behind doors are sparser than near ones.
 const OF_BARE_MAPS: [Cleaning; 5] = [
@@ -48,14 +46,10 @@ const OF_BARE_MAPS: [Cleaning; 5] = [
     cleaning("for exits", Position(1.4), false),
     cleaning("the same, told", Position(1.4), true),
 ];
-const OF_OBSERVED: [Cleaning; 7] = [
+const OF_OBSERVED: [Cleaning; 3] = [
     cleaning("none", NotCleaned, false),
     cleaning("observations", Observations, false),
     cleaning("the same, told", Observations, true),
-    cleaning("milder", Milder(0.8), false),
-    cleaning("the same, told", Milder(0.8), true),
-    cleaning("for exits", Milder(1.4), false),
-    cleaning("the same, told", Milder(1.4), true),
 ];
 
 const fn cleaning(name: &'static str, knowing: Knowing, told: bool) -> Cleaning {
@@ -81,6 +75,7 @@ fn main() -> Outcome<()> {
         given.map_or(Ok(otherwise), |text| text.parse::<u64>())
     };
     let (first_seed, rooms) = (argument(1, 1)?, argument(2, 200)?);
+    let only = std::env::args().nth(3);
     println!(
         "percent                                  |  scale known          |  scale unknown        | found of   |        | found of | sectors | closed rooms"
     );
@@ -93,10 +88,14 @@ fn main() -> Outcome<()> {
         (Kind::Counter, false, &OF_BARE_MAPS[4..]),
         (Kind::Tall, false, &OF_BARE_MAPS[4..]),
         (Kind::Plain, true, &OF_OBSERVED[..]),
-        (Kind::Curved, true, &OF_OBSERVED[6..]),
-        (Kind::Counter, true, &OF_OBSERVED[6..]),
-        (Kind::Tall, true, &OF_OBSERVED[6..]),
+        (Kind::Curved, true, &OF_OBSERVED[2..]),
+        (Kind::Counter, true, &OF_OBSERVED[2..]),
+        (Kind::Tall, true, &OF_OBSERVED[2..]),
     ] {
+        let maps = if observed { "observed" } else { "bare" };
+        if only.as_ref().is_some_and(|only| only != maps) {
+            continue;
+        }
         let tables = std::thread::scope(|scope| {
             let table = |outliers| {
                 let task = Task {
@@ -175,10 +174,6 @@ fn cleaned(mut scans: Vec<Scan>, cleaning: Cleaning) -> Outcome<Vec<Scan>> {
             config.rays.one_position.range_exponent = exponent;
         }
         Observations => {}
-        Milder(exponent) => {
-            config.rays.triangulated = Cues::one_position();
-            config.rays.triangulated.range_exponent = exponent;
-        }
     }
     for scan in &mut scans {
         let views = match cleaning.knowing {

@@ -3,6 +3,7 @@
 pub mod baseline;
 mod calibration;
 mod config;
+mod exit_search;
 mod heading;
 mod map_views;
 mod mission;
@@ -16,6 +17,7 @@ mod telemetry;
 
 pub use calibration::{Calibration, MoveKind};
 pub use config::{ConfigError, ExplorationConfig, MissionConfig, PerceptionConfig};
+pub use exit_search::{ExitCloud, ExitSearch, ExitSeeker};
 pub use heading::LevelPose;
 pub use map_views::map_views;
 pub use mission::{
@@ -24,7 +26,7 @@ pub use mission::{
 };
 pub use reach::{Place, Reach, ReachLimits, Room};
 pub use route::{Route, RouteRadii};
-pub use scene::{ExitSearch, Presence, Scene, SceneError};
+pub use scene::{Presence, Scene, SceneError};
 pub use sight::Sight;
 pub use simulation::{FlightSummary, SimulatedFlight, SimulationError};
 pub use stage::{Stage, StageObserver};

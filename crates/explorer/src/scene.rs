@@ -7,11 +7,7 @@
 //!         seen through: blank walls have no points, so hulls alone leak (paper's rule: hulls alone).
 //! Degenerate input: fewer than five points are all kept; a map without observations proves nothing free.
 
-use std::collections::BTreeSet;
-
-use exit_finder::{
-    AffinePlane, ExitConfig, ExitError, ExitReport, ExitView, Gaze, PlaneError, find_exits,
-};
+use exit_finder::{AffinePlane, ExitConfig, ExitError, PlaneError};
 use nalgebra::{Point3, Vector3};
 use rand::Rng;
 use slam_bridge::Map;
@@ -21,6 +17,7 @@ use sparse_to_obstacles::{
 use submodular_minimax::{OutlierError, ViewsError, remove_outliers};
 
 use crate::config::{MissionConfig, PerceptionConfig};
+use crate::exit_search::{ExitCloud, ExitSearch, ExitSeeker};
 use crate::heading::LevelPose;
 use crate::map_views::map_views;
 use crate::reach::Room;
@@ -54,15 +51,6 @@ pub struct Scene {
     pub sight: Sight,
     /// Metres per map unit.
     pub meters_per_unit: f64,
-}
-
-/// Exits around a place, and the points among which they were found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExitSearch {
-    /// The exits.
-    pub report: ExitReport,
-    /// Map units.
-    pub cloud: Vec<[f64; 3]>,
 }
 
 /// Why no scene could be made.
@@ -223,47 +211,30 @@ impl Scene {
         config: &MissionConfig,
     ) -> Result<ExitSearch, SceneError> {
         let plane = AffinePlane::from_up(pose.up.into(), pose.position.into())?;
-        let gazes = gazes(map);
-        let view = ExitView {
+        let seeker = ExitSeeker {
+            plane: &plane,
+            position: pose.position.into(),
             heading: Some(pose.forward.into()),
-            gazes: &gazes,
-            virtual_points: closed,
-            ..ExitView::default()
+            closed,
         };
         let need = 2.0 * config.planning_radius_m();
         let exits = ExitConfig {
             min_width: Some(self.units(need)),
             ..config.perception.exits
         };
-        let find =
-            |points: &[[f64; 3]]| find_exits(points, pose.position.into(), &plane, &view, &exits);
         let near = self.units(config.perception.exit_view_m);
-        let mut cloud = self.points_seen_about(map, &pose.position, near);
-        let mut report = find(&cloud);
+        let (kept, removed) = (&self.kept, &self.removed);
+        let mut cloud = ExitCloud::seen_about(map, kept, removed, &pose.position, near);
+        let mut report = cloud.exits(map, &seeker, &exits);
         if matches!(report, Err(ExitError::InsufficientMap { .. })) {
             // No keyframe is near enough, or the map does not tell who saw what.
-            cloud = self.kept_points();
-            report = find(&cloud);
+            cloud = ExitCloud::of(map, kept, removed);
+            report = cloud.exits(map, &seeker, &exits);
         }
         Ok(ExitSearch {
             report: report?,
-            cloud,
+            cloud: cloud.kept,
         })
-    }
-
-    /// The kept points that a keyframe within `near` map units of `place` saw.
-    fn points_seen_about(&self, map: &Map, place: &Point3<f64>, near: f64) -> Vec<[f64; 3]> {
-        let about = map.keyframes.iter();
-        let about: BTreeSet<_> = about
-            .filter(|keyframe| (keyframe.center() - place).norm() < near)
-            .map(|keyframe| keyframe.id)
-            .collect();
-        let seen = self.kept.iter().filter(|&&index| {
-            let observers = map.points.get(index).map(|point| &point.observers);
-            observers.is_some_and(|observers| observers.iter().any(|id| about.contains(id)))
-        });
-        seen.filter_map(|&index| self.points.get(index).copied())
-            .collect()
     }
 }
 
@@ -275,21 +246,6 @@ impl Room for Scene {
     fn motion_is_free(&self, a: &Point3<f64>, b: &Point3<f64>, radius: f64) -> bool {
         Self::motion_is_free(self, a, b, radius)
     }
-}
-
-/// Where the keyframes looked.
-fn gazes(map: &Map) -> Vec<Gaze> {
-    let Some(frustum) = map.frustum else {
-        return Vec::new();
-    };
-    map.keyframes
-        .iter()
-        .map(|keyframe| Gaze {
-            position: keyframe.center().into(),
-            forward: Vector3::from(keyframe.forward()).into(),
-            half_fov_rad: frustum.half_horizontal,
-        })
-        .collect()
 }
 
 fn clean(

@@ -185,8 +185,10 @@ pub fn evaluate(scans: &[Scan], known_scale: bool, config: &ExitConfig) -> Score
             ..*config
         };
         let plane = AffinePlane::from_up([0.0, 0.0, 1.0], scan.agent).unwrap();
+        let rays = scan.rays();
         let view = ExitView {
             doubtful: &scan.doubtful,
+            rays: &rays,
             ..ExitView::default()
         };
         let report = find_exits(&scan.points, scan.agent, &plane, &view, &config).unwrap();

@@ -14,10 +14,11 @@ use super::record::Cycle;
 use super::recover::Recover;
 use super::scan::Scan;
 use super::survey::SIGHT_M;
+use crate::exit_search::ExitSearch;
 use crate::heading::LevelPose;
 use crate::reach::{Reach, ReachLimits};
 use crate::route::{Route, RouteRadii};
-use crate::scene::{ExitSearch, Presence, Scene};
+use crate::scene::{Presence, Scene};
 use crate::stage::{Stage, staged};
 
 /// Places that a flood may reach: a large flat at 0.1 m.

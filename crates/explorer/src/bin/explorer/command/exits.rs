@@ -1,13 +1,14 @@
 //! `explorer exits`: where the place opens.
 
-use exit_finder::{AffinePlane, ExitConfig, ExitReport, ExitView, Gaze, Ray, find_exits};
+use exit_finder::{AffinePlane, ExitConfig, ExitReport};
+use explorer::{ExitCloud, ExitSeeker};
 use serde::Serialize;
 
 use crate::args::{ExitRule, Exits, Output, Vector};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::deliver;
-use crate::planning::{RADIUS_M, at};
+use crate::planning::RADIUS_M;
 use crate::plot::{Figure, TopView, color, scene};
 
 /// Most exits that the text lists.
@@ -90,22 +91,21 @@ pub(crate) fn exits(
         },
         ExitRule::Paper => ExitConfig::paper(),
     };
-    let gazes = gazes(loaded);
-    let doubtful = at(&loaded.points, removed);
-    let rays = rays(loaded, kept.iter().chain(removed));
-    let view = ExitView {
-        gazes: &gazes,
-        doubtful: &doubtful,
-        rays: &rays,
-        ..ExitView::default()
+    let seeker = ExitSeeker {
+        plane: &plane,
+        position,
+        heading: None,
+        closed: &[],
     };
-    let points = at(&loaded.points, kept);
-    let found = find_exits(&points, position, &plane, &view, &config).map_err(|error| {
-        Failure::new(
-            error,
-            "check --position and --up, or give a map with more points",
-        )
-    })?;
+    let cloud = ExitCloud::of(&loaded.map, kept, removed);
+    let found = cloud
+        .exits(&loaded.map, &seeker, &config)
+        .map_err(|error| {
+            Failure::new(
+                error,
+                "check --position and --up, or give a map with more points",
+            )
+        })?;
     let entry = |exit: &exit_finder::Exit| ExitEntry {
         direction: exit.direction,
         position: exit.position,
@@ -128,29 +128,6 @@ pub(crate) fn exits(
         unseen_sectors: found.unseen.len(),
         found: Some(found),
     })
-}
-
-/// Where the keyframes looked, for a map that knows the camera's field of view.
-fn gazes(loaded: &LoadedMap) -> Vec<Gaze> {
-    let Some(frustum) = loaded.map.frustum else {
-        return Vec::new();
-    };
-    let gaze = |keyframe: &slam_bridge::KeyFrame| Gaze {
-        position: keyframe.center().into(),
-        forward: keyframe.forward().into(),
-        half_fov_rad: frustum.half_horizontal,
-    };
-    loaded.map.keyframes.iter().map(gaze).collect()
-}
-
-/// Who saw which of these points, for a map with observations.
-fn rays<'a>(loaded: &LoadedMap, points: impl Iterator<Item = &'a usize>) -> Vec<Ray> {
-    let rays = loaded.rays(points.copied()).into_iter();
-    rays.map(|ray| Ray {
-        origin: ray.origin,
-        end: ray.end,
-    })
-    .collect()
 }
 
 pub(crate) fn headline(report: &ExitsReport) -> String {
