@@ -14,11 +14,11 @@ use super::outcome::Outcome;
 use super::phase::{Phase, Step};
 use super::pilot::{CommandOutcome, Finished};
 use super::record::{Cycle, Scan};
+use super::retreat::Retreat;
 use crate::config::MissionConfig;
 use crate::scene::Scene;
 use crate::stage::StageObserver;
 use slam_bridge::Map;
-use tello_sdk::Command;
 
 /// Everything that outlives a phase.
 pub(super) struct Shared {
@@ -31,6 +31,7 @@ pub(super) struct Shared {
     pub(super) scene: Option<Arc<Scene>>,
     pub(super) map: Option<Map>,
     pub(super) last: Option<Finished>,
+    pub(super) retreat: Retreat,
     /// Failures of commands in a row.
     pub(super) failures: usize,
     /// Whether the drone still obeys sticks that are not at rest.
@@ -74,15 +75,6 @@ impl Shared {
 
     pub(super) fn last_outcome(&self) -> Option<&CommandOutcome> {
         self.last.as_ref().map(|finished| &finished.outcome)
-    }
-
-    /// The turn that undoes the last command, if that was a turn: the view before it was known.
-    pub(super) fn turn_back(&self) -> Option<Command> {
-        match self.last.as_ref()?.command {
-            Command::Clockwise(turn) => Some(Command::CounterClockwise(turn)),
-            Command::CounterClockwise(turn) => Some(Command::Clockwise(turn)),
-            _ => None,
-        }
     }
 
     pub(super) fn set_outcome(&mut self, outcome: Outcome) {
@@ -155,6 +147,7 @@ impl Shared {
     /// Notes where this scan happens; a new epoch voids everything that was explored before.
     pub(super) fn begin_scan(&mut self) {
         self.follow_epoch();
+        self.retreat.forget();
         let position = self.knowledge.tracked_position();
         let frames = self.knowledge.trail().poses().len();
         self.scans.push(Scan {

@@ -98,7 +98,7 @@ impl Fly {
             return if context.knowledge.untracked_for() < context.config.lost_patience {
                 Step::Wait
             } else {
-                Step::Become(Phase::Recover(Recover::new(context.turn_back())))
+                Step::Become(Phase::Recover(Recover::new(context.retreat.take())))
             };
         };
         let Some(meters_per_unit) = context.knowledge.meters_per_unit() else {

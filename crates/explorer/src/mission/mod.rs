@@ -26,6 +26,7 @@ mod phase;
 mod pilot;
 mod record;
 mod recover;
+mod retreat;
 mod scan;
 mod spin;
 mod survey;
@@ -50,9 +51,10 @@ use landing::Landing;
 pub use outcome::Outcome;
 use phase::{Phase, Step};
 pub use pilot::CommandOutcome;
-use pilot::Pilot;
+use pilot::{Pilot, Undo};
 pub use record::{Cycle, MissionRecord, Scan};
 use recover::Recover;
+use retreat::Retreat;
 use take_off::TakeOff;
 use think::Think;
 pub use trail::TrailPose;
@@ -116,6 +118,7 @@ impl Mission {
             scene: None,
             map: None,
             last: None,
+            retreat: Retreat::default(),
             failures: 0,
             sticks_held: false,
             scans: Vec::new(),
@@ -147,6 +150,9 @@ impl Mission {
                 if let Some(finished) = self.pilot.tick(&mut self.shared.knowledge) {
                     let failed = finished.outcome != CommandOutcome::Done;
                     self.shared.failures = if failed { self.shared.failures + 1 } else { 0 };
+                    if !matches!(self.phase, Phase::Recover(_)) {
+                        self.shared.retreat.note(&finished);
+                    }
                     self.shared.last = Some(finished);
                 }
             }
@@ -261,7 +267,7 @@ impl Mission {
             return None;
         }
         let moving = self.pilot.is_moving();
-        let way_back = self.pilot.way_back(self.shared.knowledge.now());
+        let way_back = self.way_back();
         self.shared.log(Event::Lost);
         self.phase = Phase::Recover(Recover::new(way_back));
         if !moving {
@@ -269,6 +275,18 @@ impl Mission {
         }
         self.pilot.interrupt();
         Some(Command::Stop)
+    }
+
+    /// Back to the last scan, but only along the move in flight where that is broken off: how far it came is a guess, and the moves before
+    /// it would be undone from beside where they ended.
+    fn way_back(&mut self) -> Vec<Command> {
+        let now = self.shared.knowledge.now();
+        let flown = self.shared.retreat.take();
+        match self.pilot.undo_last(now) {
+            Undo::Nothing => flown,
+            Undo::Whole(command) => [command].into_iter().chain(flown).collect(),
+            Undo::Part(command) => command.into_iter().collect(),
+        }
     }
 }
 

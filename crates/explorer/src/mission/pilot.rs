@@ -6,6 +6,7 @@ use nalgebra::{Point3, Vector3};
 use tello_sdk::{Command, Distance};
 
 use super::knowledge::Knowledge;
+use super::retreat::undo;
 
 /// How a command ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,6 +56,17 @@ struct Flight {
     interrupted: bool,
 }
 
+/// What undoes the last move.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Undo {
+    /// No move is in flight or settles.
+    Nothing,
+    /// This undoes the whole move.
+    Whole(Command),
+    /// This undoes at most what was flown of it, and rather less; `None` where nothing is known to.
+    Part(Option<Command>),
+}
+
 /// Keeps the one command in flight.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pilot {
@@ -101,24 +113,35 @@ impl Pilot {
         }
     }
 
-    /// The way back along the part of a level leg that has been flown so far, or of a turn; `None` when no such
-    /// leg is in flight, or too little of it was flown.
-    pub(super) fn way_back(&self, now: Duration) -> Option<Command> {
-        let State::InFlight(flight) = &self.state else {
-            return None;
+    /// What undoes the move in flight, or the one that has just ended and settles.
+    pub(super) fn undo_last(&self, now: Duration) -> Undo {
+        let flight = match &self.state {
+            State::Idle => return Undo::Nothing,
+            State::InFlight(flight) => flight,
+            State::Settling {
+                flight, outcome, ..
+            } => {
+                let whole = *outcome == CommandOutcome::Done && !flight.interrupted;
+                return match undo(&flight.command) {
+                    Some(command) if whole => Undo::Whole(command),
+                    _ => Undo::Part(None),
+                };
+            }
         };
+        // Turns are not stopped.
+        if let Command::Clockwise(_) | Command::CounterClockwise(_) = flight.command {
+            return undo(&flight.command).map_or(Undo::Nothing, Undo::Whole);
+        }
         let seconds = now.saturating_sub(flight.since).as_secs_f64();
         let cruised = (CRUISE_M_PER_S * (seconds - REACTION_S)).max(0.0);
         let flown = |leg: Distance| Distance::from_meters(cruised.min(leg.meters())).ok();
-        match flight.command {
+        Undo::Part(match flight.command {
             Command::Forward(leg) => flown(leg).map(Command::Back),
             Command::Back(leg) => flown(leg).map(Command::Forward),
             Command::Left(leg) => flown(leg).map(Command::Right),
             Command::Right(leg) => flown(leg).map(Command::Left),
-            Command::Clockwise(turn) => Some(Command::CounterClockwise(turn)),
-            Command::CounterClockwise(turn) => Some(Command::Clockwise(turn)),
             _ => None,
-        }
+        })
     }
 
     /// Forgets the command in flight: something more urgent goes out.
@@ -200,5 +223,57 @@ fn time_limit(command: &Command) -> Duration {
     match command {
         Command::TakeOff | Command::Land => Duration::from_secs(20),
         _ => Duration::from_secs(16),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::maneuver::{back, forward, turn};
+    use super::*;
+    use tello_sdk::{Source, Telemetry};
+
+    fn at(millis: u64) -> Knowledge {
+        let now = Duration::from_millis(millis);
+        let mut knowledge = Knowledge::default();
+        knowledge.observe(
+            now,
+            &Telemetry::builder(now, Source::Simulated).build(),
+            None,
+        );
+        knowledge
+    }
+
+    /// What undoes `command`, which was sent at once and is answered after `answered` milliseconds if at all, `millis` after that.
+    fn undone(command: Option<Command>, answered: Option<u64>, millis: u64) -> Undo {
+        let mut pilot = Pilot::new();
+        pilot.start(command.unwrap(), &at(0));
+        if let Some(answered) = answered {
+            pilot.answer(CommandOutcome::Done, Duration::from_millis(answered));
+        }
+        pilot.undo_last(Duration::from_millis(millis))
+    }
+
+    #[test]
+    fn of_a_move_in_flight_only_what_was_flown_is_undone() {
+        assert_eq!(undone(forward(100), None, 300), Undo::Part(None));
+        let Undo::Part(Some(Command::Back(part))) = undone(forward(100), None, 2350) else {
+            panic!("no way back")
+        };
+        assert!((part.meters() - 0.7).abs() < 0.011, "{part:?}");
+        assert_eq!(undone(forward(40), None, 9000), Undo::Part(back(40)));
+        // A turn runs to its end.
+        assert_eq!(
+            undone(turn(0.5), None, 10),
+            Undo::Whole(turn(-0.5).unwrap())
+        );
+    }
+
+    #[test]
+    fn a_move_that_has_just_ended_is_undone_whole() {
+        assert_eq!(
+            undone(forward(100), Some(2000), 2100),
+            Undo::Whole(back(100).unwrap())
+        );
+        assert_eq!(Pilot::new().undo_last(Duration::ZERO), Undo::Nothing);
     }
 }

@@ -1,4 +1,4 @@
-//! Find the lost pose again: back along the last leg, then look around.
+//! Find the lost pose again: back along the moves since the last scan, then look around.
 
 use core::f64::consts::TAU;
 use core::time::Duration;
@@ -8,6 +8,7 @@ use super::event::Event;
 use super::maneuver::{climb, turn};
 use super::outcome::Outcome;
 use super::phase::{Phase, Step};
+use super::pilot::CommandOutcome;
 use super::think::Think;
 use tello_sdk::Command;
 
@@ -20,22 +21,21 @@ const LOOKS: usize = 24;
 
 #[derive(Debug)]
 pub(super) struct Recover {
-    /// Back along the leg that was being flown: it is known to be free.
-    way_back: Option<Command>,
+    /// What is left of the way back, the next move last.
+    way_back: Vec<Command>,
+    /// A move of the way back is in flight or has just ended.
+    on_the_way: bool,
     began: Option<Duration>,
     looks: usize,
 }
 
 impl Recover {
-    /// After losing the pose on the spot.
-    pub(super) fn in_place() -> Self {
-        Self::new(None)
-    }
-
-    /// After losing the pose on a leg with this way back, if any.
-    pub(super) fn new(way_back: Option<Command>) -> Self {
+    /// After losing the pose with this way back, the next move first.
+    pub(super) fn new(mut way_back: Vec<Command>) -> Self {
+        way_back.reverse();
         Self {
             way_back,
+            on_the_way: false,
             began: None,
             looks: 0,
         }
@@ -51,7 +51,13 @@ impl Recover {
         if now < began + PATIENCE {
             return Step::Wait;
         }
-        if let Some(command) = self.way_back.take() {
+        if self.on_the_way && context.last_outcome() != Some(&CommandOutcome::Done) {
+            // Nobody knows where the drone is on it.
+            self.way_back.clear();
+        }
+        self.on_the_way = false;
+        if let Some(command) = self.way_back.pop() {
+            self.on_the_way = true;
             return Step::Send(command);
         }
         if self.looks == LOOKS {
@@ -64,5 +70,77 @@ impl Recover {
             turn(LOOK)
         };
         command.map_or(Step::Wait, Step::Send)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::Drawn;
+    use super::super::maneuver::{back, forward, left, right};
+    use super::super::pilot::Finished;
+    use super::super::{Input, Mission, Output};
+    use super::*;
+    use slam_bridge::{SlamUpdate, TrackingState};
+    use tello_sdk::{Source, Telemetry};
+
+    /// A mission that flew forward and left after its last scan and lost the pose while deciding what to do next.
+    fn lost() -> Mission {
+        let mut mission = Drawn::new(&["#####", "#.a.#", "#####"]).mission;
+        for command in [forward(60), left(30)].into_iter().flatten() {
+            mission.shared.retreat.note(&Finished {
+                command,
+                outcome: CommandOutcome::Done,
+            });
+        }
+        mission.phase = Phase::Think(Think::again());
+        mission
+    }
+
+    /// A frame without a pose, `millis` after the drone was switched on.
+    fn frame(mission: &mut Mission, millis: u64) -> Output {
+        let now = Duration::from_millis(millis);
+        mission.handle(Input::Frame {
+            now,
+            telemetry: Box::new(Telemetry::builder(now, Source::Simulated).build()),
+            slam: Some(SlamUpdate {
+                time: now,
+                state: TrackingState::Lost,
+                world_from_camera: None,
+                epoch: 0,
+                tracked_points: 0,
+            }),
+        });
+        mission.poll(&mut ())
+    }
+
+    fn command(mission: &mut Mission, millis: u64) -> Option<Command> {
+        match frame(mission, millis) {
+            Output::Send(command) => Some(command),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn what_was_flown_since_the_scan_is_undone_before_the_look_around() {
+        let mut mission = lost();
+        assert_eq!(frame(&mut mission, 1000), Output::Wait, "patience");
+        assert_eq!(command(&mut mission, 2000), right(30));
+        mission.handle(Input::Answer(CommandOutcome::Done));
+        assert_eq!(command(&mut mission, 3000), back(60));
+        mission.handle(Input::Answer(CommandOutcome::Done));
+        assert_eq!(command(&mut mission, 5000), turn(LOOK));
+        assert!(
+            mission.shared.retreat.take().is_empty(),
+            "nothing is undone twice"
+        );
+    }
+
+    #[test]
+    fn a_refused_way_back_ends_it() {
+        let mut mission = lost();
+        assert_eq!(frame(&mut mission, 1000), Output::Wait, "patience");
+        assert_eq!(command(&mut mission, 2000), right(30));
+        mission.handle(Input::Answer(CommandOutcome::Refused("error".to_owned())));
+        assert_eq!(command(&mut mission, 3000), turn(LOOK));
     }
 }

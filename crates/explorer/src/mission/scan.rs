@@ -111,7 +111,7 @@ impl Scan {
             return climb(-centimeters).map_or(Step::Wait, Step::Send);
         }
         if !context.knowledge.is_tracking() {
-            return Step::Become(Phase::Recover(Recover::new(context.turn_back())));
+            return Step::Become(Phase::Recover(Recover::new(context.retreat.take())));
         }
         match self.purpose {
             Purpose::Site if context.needs_triangle() => Step::Become(context.triangle()),

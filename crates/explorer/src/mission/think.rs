@@ -54,7 +54,7 @@ impl Think {
             context.homing = Some(Outcome::OutOfScans);
         }
         let Some(pose) = context.knowledge.pose() else {
-            return Step::Become(Phase::Recover(Recover::in_place()));
+            return Step::Become(Phase::Recover(Recover::new(context.retreat.take())));
         };
         if context.epoch != Some(context.knowledge.epoch()) {
             // SLAM began a new map: its scale and its plane are unknown until a scan has been flown in it.
