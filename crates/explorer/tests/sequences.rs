@@ -38,8 +38,16 @@ fn alignment_finds_the_scale_and_none_finds_the_error() {
     assert!(report["rmse"].as_f64() < Some(1e-9) && report["pairs"] == 80);
     assert!((report["scale"].as_f64().expect("a number") - 2.0).abs() < 1e-9);
     assert!(fs::read(&picture).expect("a picture").starts_with(b"<svg"));
-    let report = json(&["evaluate", &half, &truth, "--align", "none"]);
+    let report = json(&[
+        "evaluate", &half, &truth, "--align", "none", "--plot", &picture,
+    ]);
     assert!(report["rmse"].as_f64() > Some(0.5) && report["scale"] == 1.0);
+    assert_eq!(report["align_by"], "nothing");
+    assert!(
+        fs::read_to_string(&picture)
+            .expect("a picture")
+            .contains("not aligned")
+    );
     // Half of every step of 0.1 is missing.
     let drift = &report["rpe_frame"]["translation"]["mean"];
     assert!((drift.as_f64().expect("a number") - 0.051).abs() < 1e-3);

@@ -31,7 +31,7 @@ struct EvaluateReport {
     scale: f64,
     /// sim3, se3 or none.
     align: &'static str,
-    /// What fixed the rotation of that: positions or poses.
+    /// What fixed the rotation of that: positions, poses or nothing.
     align_by: &'static str,
     /// Poses in the estimate's file, and in the reference's.
     poses: [usize; 2],
@@ -121,7 +121,7 @@ pub(crate) fn run(arguments: &Evaluate, output: &Output) -> Result<(), Failure> 
             AlignChoice::Se3 => "se3",
             AlignChoice::None => "none",
         },
-        align_by: name(config.align_by),
+        align_by: name(arguments, config.align_by),
         poses: [estimate.len(), reference.len()],
         rotation_deg: Summary::of(&ape.rotation, 1_f64.to_degrees()),
         frobenius: Summary::of(&ape.frobenius, 1.0),
@@ -147,10 +147,23 @@ fn by(arguments: &Evaluate, usual: AlignBy) -> AlignBy {
     }
 }
 
-fn name(by: AlignBy) -> &'static str {
-    match by {
-        AlignBy::Positions => "positions",
-        AlignBy::Poses => "poses",
+/// What fixes the rotation.
+fn name(arguments: &Evaluate, by: AlignBy) -> &'static str {
+    match (&arguments.align, by) {
+        (AlignChoice::None, _) => "nothing",
+        (_, AlignBy::Positions) => "positions",
+        (_, AlignBy::Poses) => "poses",
+    }
+}
+
+/// The alignment in words.
+fn alignment(report: &EvaluateReport) -> String {
+    match report.align {
+        "none" => "not aligned".to_owned(),
+        kind => format!(
+            "{kind} alignment by {}, scale {:.6}",
+            report.align_by, report.scale
+        ),
     }
 }
 
@@ -212,13 +225,11 @@ fn drift(
 fn text(report: &EvaluateReport) -> String {
     let error = &report.translation;
     let mut text = format!(
-        "ATE rmse {:.6} m over {} pairs ({} alignment by {}, scale {:.6})\n\
+        "ATE rmse {:.6} m over {} pairs ({})\n\
          mean {:.6}, median {:.6}, std {:.6}, min {:.6}, max {:.6} m; rotation rmse {:.3} degrees",
         error.rmse,
         report.pairs,
-        report.align,
-        report.align_by,
-        report.scale,
+        alignment(report),
         error.mean,
         error.median,
         error.std,
@@ -287,8 +298,10 @@ fn figure(report: &EvaluateReport, ape: &AbsolutePoseError, tracks: &[Track; 2])
     let ends = ape.pairs.iter().filter_map(stroke).collect();
     let title = "Estimated and true trajectory";
     let subtitle = format!(
-        "ATE rmse {:.4} m, {} pairs, {} alignment by {}, scale {:.4}",
-        report.translation.rmse, report.pairs, report.align, report.align_by, report.scale
+        "ATE rmse {:.4} m, {} pairs, {}",
+        report.translation.rmse,
+        report.pairs,
+        alignment(report)
     );
     let mut figure = trajectory::figure(title, &subtitle, "m", axes, tracks);
     let errors = Layer::new(

@@ -135,7 +135,8 @@ fn sample<'a>(
     (x, y): (i32, i32),
 ) -> DynElement<'static, SVGBackend<'a>, (i32, i32)> {
     let (r, g, b) = layer.color;
-    let color = RGBColor(r, g, b);
+    // As pale as the layer itself, though not so pale that a lone mark is not seen.
+    let color = RGBColor(r, g, b).mix(layer.opacity.max(PALEST));
     match &layer.shape {
         Shape::Dots { .. } => Circle::new((x + 10, y), 4, color.filled()).into_dyn(),
         Shape::Crosses { .. } => Cross::new((x + 10, y), 4, color.stroke_width(2)).into_dyn(),
@@ -147,11 +148,13 @@ fn sample<'a>(
             PathElement::new([(x + 1, y), (x + 19, y)], color.stroke_width(3)).into_dyn()
         }
         Shape::Polygons { .. } => {
-            let box_style = color.mix(layer.opacity.max(0.3)).filled();
-            Rectangle::new([(x + 3, y - 5), (x + 17, y + 5)], box_style).into_dyn()
+            Rectangle::new([(x + 3, y - 5), (x + 17, y + 5)], color.filled()).into_dyn()
         }
     }
 }
+
+/// Least opacity of a mark in the legend.
+const PALEST: f64 = 0.3;
 
 /// Width and height of the drawing area, pixels.
 fn area() -> (f64, f64) {
@@ -215,6 +218,29 @@ mod tests {
         };
         // Strokes of the mark, and the line itself.
         assert_eq!((marks(false), marks(true)), (1, 2));
+    }
+
+    #[test]
+    fn a_mark_is_as_pale_as_its_layer() {
+        let at = vec![[0.0, 0.0], [1.0, 1.0]];
+        for (opacity, shown) in [(1.0, "1"), (0.45, "0.45"), (0.1, "0.3")] {
+            let dots = Shape::Dots {
+                at: at.clone(),
+                radius: 2.0,
+            };
+            let figure = Figure {
+                layers: vec![Layer::new("points", (1, 2, 3), dots).opacity(opacity)],
+                ..Figure::default()
+            };
+            let svg = figure.to_svg().expect("a picture");
+            let mark = svg
+                .split("<circle")
+                .nth(1)
+                .and_then(|rest| rest.split("/>").next());
+            let mark = mark.expect("a mark");
+            let expected = format!("opacity=\"{shown}\" fill=\"#010203\"");
+            assert!(mark.contains(&expected), "{mark}");
+        }
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub(super) struct MapReport {
     completeness: f64,
     /// Metres.
     threshold: f64,
-    /// What fixed the rotation that the map was moved by (positions or poses), and what the map's lengths were multiplied by.
+    /// What fixed the rotation that the map was moved by (positions, poses or nothing), and what the map's lengths were multiplied by.
     align_by: &'static str,
     scale: f64,
     /// Error of the orientations after that, degrees (rmse): far points swing with it.
@@ -91,7 +91,7 @@ impl MapError {
             accuracy: found.accuracy,
             completeness: found.completeness,
             threshold,
-            align_by: super::name(align_by),
+            align_by: super::name(arguments, align_by),
             scale: aligned.alignment.scale,
             rotation_deg: aligned.rotation.rmse.to_degrees(),
             distance: Summary::of(&statistics, 1.0),
