@@ -35,8 +35,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     for seed in first..first + count {
         let scan = scan::scan(seed)?;
         println!(
-            "apartment {seed}: {} rooms, {} points, {} keyframes",
+            "apartment {seed}: {} rooms, looked around at {} of {} places, {} points, {} keyframes",
             scan.world.rooms().len(),
+            scan.visited,
+            scan.sites,
             scan.points.len(),
             scan.keyframes
         );

@@ -8,7 +8,7 @@ use explorer::map_views;
 use indoor_sim::{SimConfig, Simulator, World};
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{TautConfig, taut};
-use rrt_refine::{Bounds, Query, RrtConfig, rrt_connect};
+use rrt_refine::{Bounds, Path, Query, RrtConfig, rrt_connect};
 use slam_bridge::nalgebra::Point3;
 use slam_bridge::{KeyFrame, SlamSource};
 use sparse_to_obstacles::Ray;
@@ -19,10 +19,17 @@ pub(crate) type Place = [f64; 3];
 
 /// Height of the flight, metres.
 const HEIGHT: f64 = 1.0;
-/// The pilot keeps this far from everything, metres.
-const BERTH: f64 = 0.2;
+/// The pilot keeps the first of these distances from everything, metres, with which there is a way: a hop errs by a few
+/// centimetres, and doors are wide enough for the middle ones.
+const BERTHS: [f64; 5] = [0.4, 0.35, 0.3, 0.25, 0.2];
+/// Places to look around at keep this distance, metres.
+const SITE_BERTH: f64 = 0.25;
 /// Longest hop between two corrections, metres.
-const HOP: f64 = 1.0;
+const HOP: f64 = 0.6;
+/// Half the height of the layer in which ways are planned, metres.
+const LEVEL: f64 = 0.01;
+/// Shortest move that the drone knows, centimetres.
+const SHORTEST_MOVE: i64 = 20;
 /// A scan for every stretch of a room that is this long, metres.
 const STRETCH: f64 = 5.0;
 
@@ -36,6 +43,9 @@ pub(crate) struct Scan {
     /// The same to where the corners truly are, without wrong points: what the scan really saw through.
     pub(crate) sight_lines: Vec<Ray>,
     pub(crate) keyframes: usize,
+    /// Places to look around at, and at how many of them the pilot did.
+    pub(crate) sites: usize,
+    pub(crate) visited: usize,
 }
 
 /// Visits every room of the apartment that `seed` draws, turning once round in each.
@@ -53,17 +63,25 @@ pub(crate) fn scan(seed: u64) -> Result<Scan, Box<dyn Error>> {
     };
     pilot.order(&Command::TakeOff)?;
     pilot.look_around()?;
-    for site in sites(&world) {
+    let sites = sites(&world);
+    let mut visited = 0;
+    for &site in &sites {
         if pilot.go_to(site)? {
             pilot.look_around()?;
+            visited += 1;
         }
     }
-    collect(&pilot.sim, world)
+    let scan = collect(&pilot.sim, world)?;
+    Ok(Scan {
+        sites: sites.len(),
+        visited,
+        ..scan
+    })
 }
 
 /// Where to look around: for each stretch of each room the nearest reachable place to its middle.
 fn sites(world: &World) -> Vec<Place> {
-    let reach = world.reachable(HEIGHT, 0.15, BERTH + 0.05);
+    let reach = world.reachable(HEIGHT, 0.15, SITE_BERTH);
     let middles = world.rooms().iter().flat_map(|room| {
         let long = usize::from(room.max[1] - room.min[1] > room.max[0] - room.min[0]);
         let count = ((room.max[long] - room.min[long]) / STRETCH)
@@ -134,34 +152,56 @@ impl Pilot {
 
     /// Flies to a place on a way that the truth allows; was it reached?
     fn go_to(&mut self, goal: Place) -> Result<bool, Box<dyn Error>> {
-        let world = self.sim.world();
-        let (low, high) = world.bounds();
-        let (mut low, mut high) = (low, high);
-        (low[2], high[2]) = (0.8, 1.4);
-        let bounds = Bounds::new(low, high)?;
-        let free = |a: &Place, b: &Place| world.segment_is_free(*a, *b, BERTH);
-        let (config, mut rng) = (RrtConfig::default(), Pcg64::new(1, 1));
-        let query = Query::new(self.here(), goal, bounds);
-        let Ok(plan) = rrt_connect(&query, &free, &config, &mut rng) else {
+        self.level()?;
+        let Some(path) = BERTHS.iter().find_map(|&berth| self.way_to(goal, berth)) else {
             return Ok(false);
         };
-        let Some(path) = plan.path else {
-            return Ok(false);
-        };
-        let path = taut(&path, &free, &TautConfig::default())?.path;
         for &waypoint in &path.points()[1..] {
             self.fly_to(waypoint)?;
         }
-        Ok(true)
+        Ok(self.sim.is_flying())
+    }
+
+    /// A level way from here.
+    fn way_to(&self, goal: Place, berth: f64) -> Option<Path<3>> {
+        let world = self.sim.world();
+        let here = self.here();
+        let (mut low, mut high) = world.bounds();
+        (low[2], high[2]) = (here[2] - LEVEL, here[2] + LEVEL);
+        let bounds = Bounds::new(low, high).ok()?;
+        let free = |a: &Place, b: &Place| world.segment_is_free(*a, *b, berth);
+        let query = Query::new(here, [goal[0], goal[1], here[2]], bounds);
+        let mut rng = Pcg64::new(1, 1);
+        let plan = rrt_connect(&query, &free, &RrtConfig::default(), &mut rng).ok()?;
+        let path = taut(&plan.path?, &free, &TautConfig::default()).ok()?;
+        Some(path.path)
+    }
+
+    /// Back to the height of the flight: up and down, since a move has a least length.
+    fn level(&mut self) -> Result<(), Box<dyn Error>> {
+        let rise = (100.0 * (HEIGHT - self.here()[2])).round() as i64;
+        let (up, down) = match rise {
+            0 => return Ok(()),
+            _ if rise >= SHORTEST_MOVE => (rise, 0),
+            _ if -rise >= SHORTEST_MOVE => (0, -rise),
+            _ => (SHORTEST_MOVE + rise.max(0), SHORTEST_MOVE + (-rise).max(0)),
+        };
+        if up > 0 {
+            self.order(&Command::Up(Distance::from_cm(up)?))?;
+        }
+        if down > 0 {
+            self.order(&Command::Down(Distance::from_cm(down)?))?;
+        }
+        Ok(())
     }
 
     /// Straight ahead in hops, the heading corrected before each.
     fn fly_to(&mut self, waypoint: Place) -> Result<(), Box<dyn Error>> {
-        for _ in 0..30 {
+        for _ in 0..60 {
             let pose = self.sim.pose();
             let to = pose.inverse_transform_point(&Point3::from(waypoint));
             let away = to.x.hypot(to.y);
-            if away < 0.2 {
+            if 100.0 * away < SHORTEST_MOVE as f64 || !self.sim.is_flying() {
                 break;
             }
             let turn = to.y.atan2(to.x).to_degrees().round();
@@ -216,6 +256,8 @@ fn collect(sim: &Simulator, world: World) -> Result<Scan, Box<dyn Error>> {
         rays,
         sight_lines,
         keyframes: map.keyframes.len(),
+        sites: 0,
+        visited: 0,
         world,
     })
 }

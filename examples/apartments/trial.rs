@@ -6,7 +6,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rrt_refine::refine::{TautConfig, taut};
 use rrt_refine::{Bounds, Path, Query, RrtConfig, rrt_connect};
-use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Ray, Space};
+use sparse_to_obstacles::{
+    Berth, FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Ray, Space,
+};
 
 use crate::scan::{Place, Scan};
 
@@ -14,11 +16,6 @@ use crate::scan::{Place, Scan};
 pub(crate) const RADIUS: f64 = 0.15;
 /// Radius of its body.
 const BODY: f64 = 0.1;
-/// The berth that paths keep where there is a way with it, else the next: what is proven free is proven to a voxel, and a
-/// shortest path hugs every corner.
-const BERTHS: [f64; 4] = [2.0 * RADIUS, 0.25, 0.2, RADIUS];
-/// As near as this to an end of the path the radius is enough: the ends are given.
-const END: f64 = 0.5;
 /// Most samples and nodes of a search: proven space has narrow passages.
 const BUDGET: usize = 100_000;
 /// Kept points to a cluster.
@@ -183,16 +180,8 @@ pub(crate) fn run(
 
 /// The path with the widest berth that there is.
 fn plan_widest(query: [Place; 2], bounds: &Bounds<3>, space: &Space<'_>) -> Option<Path<3>> {
-    let near = |place: &Place, end: &Place| {
-        let squared = |i: usize| (place[i] - end[i]).powi(2);
-        (0..3).map(squared).sum::<f64>() <= END * END
-    };
-    let at_an_end = |a: &Place, b: &Place| query.iter().any(|end| near(a, end) && near(b, end));
-    BERTHS.iter().find_map(|&berth| {
-        let free = |a: &Place, b: &Place| {
-            space.motion_is_free(*a, *b, berth)
-                || at_an_end(a, b) && space.motion_is_free(*a, *b, RADIUS)
-        };
+    Berth::widest_first(RADIUS, query).find_map(|berth| {
+        let free = |a: &Place, b: &Place| berth.allows(space, *a, *b);
         plan(query, bounds, &free)
     })
 }

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod berth;
 mod free_space;
 mod hull;
 mod kmeans;
@@ -8,6 +9,7 @@ mod point;
 mod space;
 mod vector;
 
+pub use berth::Berth;
 pub use free_space::{FreeSpace, FreeSpaceConfig, FreeSpaceError, Ray, VoxelState};
 pub use hull::{Hull, HullKind};
 pub use kmeans::{

@@ -6,7 +6,9 @@ use rrt_refine::{
     Bounds, FindPathConfig, MotionValidator, Path, PlanError, Query, Refined, RrtConfig,
     RrtStarConfig, find_path, refine, rrt, rrt_connect, rrt_star,
 };
-use sparse_to_obstacles::{FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Space, kmeans};
+use sparse_to_obstacles::{
+    Berth, FreeSpace, FreeSpaceConfig, ObstacleConfig, ObstacleSet, Space, kmeans,
+};
 
 use crate::args::{Planner, Refiner};
 use crate::failure::Failure;
@@ -213,6 +215,13 @@ impl Question<'_> {
         }
     }
 
+    /// What to keep free around the path, the widest first. The paper's hulls are asked for the radius alone.
+    fn berths(&self) -> impl Iterator<Item = Berth> {
+        let berths = Berth::widest_first(self.radius, [self.from, self.to]);
+        let proven = matches!(self.space, Space::ProvenFree { .. });
+        berths.filter(move |berth| proven || berth.width <= berth.radius)
+    }
+
     /// Where paths may lead: the box of the points, less the outermost of each axis, and of both ends.
     pub(crate) fn bounds(&self, points: &[[f64; 3]]) -> Result<Bounds<3>, Failure> {
         let mut corners = vec![self.from, self.to];
@@ -227,20 +236,45 @@ impl Question<'_> {
 /// A planner's answer.
 #[derive(Debug)]
 pub(crate) struct Answer {
-    /// Raw and refined, when there is a path.
-    pub(crate) paths: Option<(Path<3>, Path<3>)>,
+    /// Raw, refined, and the berth that they keep, when there is a path.
+    pub(crate) paths: Option<(Path<3>, Path<3>, f64)>,
     /// Motions checked, planning and refining together.
     pub(crate) checks: usize,
 }
 
-/// Plans and refines. A start or goal that is not free is an error; no path within the budget is not.
-///
-/// The default planner and refiner go on looking for anything shorter; any other pair is asked once.
+/// Plans and refines, in proven space with the widest berth that there is a path with. A start or goal that is not free is an error;
+/// no path within the budget is not.
 pub(crate) fn plan(question: &Question<'_>, bounds: &Bounds<3>) -> Result<Answer, Failure> {
-    let free = |a: &[f64; 3], b: &[f64; 3]| {
-        let (space, radius) = (question.space, question.radius);
-        space.motion_is_free(*a, *b, radius)
-    };
+    let mut checks = 0;
+    for berth in question.berths() {
+        let free = |a: &[f64; 3], b: &[f64; 3]| berth.allows(&question.space, *a, *b);
+        let answer = attempt(question, bounds, &free)?;
+        checks += answer.checks;
+        if let Some(paths) = answer.paths {
+            return Ok(Answer {
+                paths: Some((paths.0, paths.1, berth.width)),
+                checks,
+            });
+        }
+    }
+    Ok(Answer {
+        paths: None,
+        checks,
+    })
+}
+
+/// What one berth gives.
+struct Attempt {
+    paths: Option<(Path<3>, Path<3>)>,
+    checks: usize,
+}
+
+/// The default planner and refiner go on looking for anything shorter; any other pair is asked once.
+fn attempt(
+    question: &Question<'_>,
+    bounds: &Bounds<3>,
+    free: &impl MotionValidator<3>,
+) -> Result<Attempt, Failure> {
     let query = Query::new(question.from, question.to, *bounds);
     let mut rng = Pcg64::seed_from_u64(question.seed);
     if question.planner == Planner::RrtConnect && question.refiner == Refiner::Dag {
@@ -248,24 +282,24 @@ pub(crate) fn plan(question: &Question<'_>, bounds: &Bounds<3>) -> Result<Answer
             rrt: question.config(),
             ..FindPathConfig::default()
         };
-        let found = find_path(&query, &free, &config, &mut rng).map_err(|error| refusal(&error))?;
-        return Ok(Answer {
+        let found = find_path(&query, free, &config, &mut rng).map_err(|error| refusal(&error))?;
+        return Ok(Attempt {
             paths: found.plan.path.zip(found.path),
             checks: found.checks,
         });
     }
-    let found = search(question, &query, &free, &mut rng).map_err(|error| refusal(&error))?;
-    let mut answer = Answer {
+    let found = search(question, &query, free, &mut rng).map_err(|error| refusal(&error))?;
+    let mut attempt = Attempt {
         paths: None,
         checks: found.checks,
     };
     if let Some(raw) = found.path {
-        let refined = refine_path(question, &raw, &free)?;
-        answer.checks += refined.as_ref().map_or(0, |refined| refined.checks);
+        let refined = refine_path(question, &raw, free)?;
+        attempt.checks += refined.as_ref().map_or(0, |refined| refined.checks);
         let path = refined.map_or_else(|| raw.clone(), |refined| refined.path);
-        answer.paths = Some((raw, path));
+        attempt.paths = Some((raw, path));
     }
-    Ok(answer)
+    Ok(attempt)
 }
 
 fn search(

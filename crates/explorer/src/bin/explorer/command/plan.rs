@@ -31,6 +31,8 @@ pub(crate) struct PlanReport {
     pub(crate) min_clearance: Option<f64>,
     /// Radius of the body that was planned for.
     pub(crate) radius: f64,
+    /// Radius of the ball that the path keeps free away from its ends; at least `radius`.
+    pub(crate) berth: Option<f64>,
     /// "hulls" or "proven-free".
     pub(crate) space: String,
     #[serde(skip)]
@@ -49,6 +51,7 @@ impl PlanReport {
             seconds: 0.0,
             min_clearance: None,
             radius,
+            berth: None,
             space: if proven { "proven-free" } else { "hulls" }.to_owned(),
             raw_path: Vec::new(),
         }
@@ -57,10 +60,11 @@ impl PlanReport {
     /// Takes up what the planner found.
     pub(crate) fn take(&mut self, answer: Answer, built: &Surroundings) {
         self.checks += answer.checks;
-        let Some((raw, path)) = answer.paths else {
+        let Some((raw, path, berth)) = answer.paths else {
             return;
         };
         self.status = "found".to_owned();
+        self.berth = Some(berth);
         self.length = Some(path.length());
         self.raw_length = Some(raw.length());
         self.raw_path = raw.into_points();
