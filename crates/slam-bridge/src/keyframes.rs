@@ -9,11 +9,20 @@ use crate::{Fault, KeyFrame, KeyFrameId, ReadError, fields, lines::Lines};
 
 const COLUMNS: usize = 10;
 
-/// Reads keyframes, camera-to-world in map units, ascending by id.
+/// Reads keyframes, camera-to-world in map units, ascending by id. The frame's number is not used; an empty timestamp is
+/// a time that nobody knows.
 ///
 /// # Errors
-/// [`ReadError::At`] with the line for anything but ten numbers, a quaternion without length, or an
+/// [`ReadError::At`] with the line for too few columns, what is no finite number, a quaternion without length, or an
 /// id that came before.
+///
+/// # Example
+/// ```
+/// let keyframes = slam_bridge::read_keyframes("7,7,0.5,1,2,3,0,0,0,1\n8,8,,1,2,4,0,0,0,1\n".as_bytes())?;
+/// assert_eq!(keyframes[0].center().z, 3.0);
+/// assert_eq!((keyframes[0].time, keyframes[1].time), (Some(0.5), None));
+/// # Ok::<(), slam_bridge::ReadError>(())
+/// ```
 pub fn read_keyframes<R: BufRead>(reader: R) -> Result<Vec<KeyFrame>, ReadError> {
     let mut lines = Lines::new(reader);
     let mut keyframes = Vec::new();
@@ -34,7 +43,7 @@ pub fn read_keyframes<R: BufRead>(reader: R) -> Result<Vec<KeyFrame>, ReadError>
     Ok(keyframes)
 }
 
-/// Writes keyframes as [`read_keyframes`] reads them; an unknown time becomes 0.
+/// Writes keyframes as [`read_keyframes`] reads them, with every digit that the numbers have.
 ///
 /// # Errors
 /// Those of the writer.
@@ -42,7 +51,9 @@ pub fn write_keyframes<W: Write>(keyframes: &[KeyFrame], mut writer: W) -> io::R
     writeln!(writer, "keyframe_id,frame_id,timestamp,x,y,z,qx,qy,qz,qw")?;
     for keyframe in keyframes {
         let id = keyframe.id.0;
-        let time = keyframe.time.unwrap_or_default();
+        let time = keyframe
+            .time
+            .map_or_else(String::new, |time| time.to_string());
         let [x, y, z, qx, qy, qz, qw] = pose_numbers(&keyframe.world_from_camera);
         writeln!(writer, "{id},{id},{time},{x},{y},{z},{qx},{qy},{qz},{qw}")?;
     }
@@ -59,7 +70,10 @@ fn keyframe(line: &str) -> Result<KeyFrame, Fault> {
     }
     Ok(KeyFrame {
         id: KeyFrameId(fields::id(fields.first().copied().unwrap_or_default())?),
-        time: Some(fields::finite(&fields, 2)?),
+        time: match fields.get(2) {
+            Some(&"") => None,
+            _ => Some(fields::finite(&fields, 2)?),
+        },
         world_from_camera: pose(&fields, 3)?,
     })
 }

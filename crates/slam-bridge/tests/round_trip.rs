@@ -30,7 +30,8 @@ fn map() -> impl Strategy<Value = Map> {
         proptest::option::weighted(0.1, 1e-3..1e9_f64),
     );
     let points = proptest::collection::vec(point, 1..30);
-    let keyframes = proptest::collection::vec((pose(), 0.0..1e9_f64), 0..8);
+    let time = proptest::option::weighted(0.8, 0.0..1e9_f64);
+    let keyframes = proptest::collection::vec((pose(), time), 0..8);
     let scale = prop_oneof![
         Just(Scale::Unknown),
         (1e-3..1e3_f64).prop_map(Scale::MetersPerUnit)
@@ -68,10 +69,12 @@ fn map_point(keyframes: usize) -> impl Fn((usize, RawPoint)) -> MapPoint {
     }
 }
 
-fn keyframe((index, (world_from_camera, time)): (usize, (Isometry3<f64>, f64))) -> KeyFrame {
+fn keyframe(
+    (index, (world_from_camera, time)): (usize, (Isometry3<f64>, Option<f64>)),
+) -> KeyFrame {
     KeyFrame {
         id: KeyFrameId(3 * index as u64),
-        time: Some(time),
+        time,
         world_from_camera,
     }
 }
@@ -178,7 +181,10 @@ fn a_folder_gives_back_the_map() {
     let folder = std::env::temp_dir().join(format!("slam-bridge-folder-{}", std::process::id()));
     let mut map = Map::from_positions([[1.0, 2.0, 3.0], [0.1, 0.2, 0.3]]);
     map.scale = Scale::MetersPerUnit(0.37);
-    map.keyframes = vec![keyframe((0, (Isometry3::translation(0.5, 0.0, 0.0), 1.25)))];
+    map.keyframes = vec![keyframe((
+        0,
+        (Isometry3::translation(0.5, 0.0, 0.0), Some(1.25)),
+    ))];
     map.points[1].observers = vec![KeyFrameId(0)];
     write_map_folder(&map, &folder).expect("a folder of our own");
     let read = read_map(&folder).expect("own folder");
