@@ -2,7 +2,7 @@
 //!
 //! Run: `cargo run --release -p examples --example explore_simulated [WORLD] [SEED]`
 //! Prints the mission's story as it happens, and at the end what only the simulator can know: how much was seen, and whether
-//! anything was touched. WORLD is a preset (apartment, one-door-room, two-rooms, closed-room) or generated:SEED.
+//! anything was touched. WORLD is a preset of `indoor_sim::PRESETS` (apartment, two-rooms, ...) or generated:SEED.
 
 #![allow(clippy::print_stdout, reason = "an example speaks to the terminal")]
 

@@ -22,7 +22,7 @@ pub(crate) fn sample(
         .acceleration(specific_force(drone))
         .height_m(height(drone))
         .tof_m(ground_distance(drone, world))
-        .barometer_m((150.0 + drone.position().z).mul_add(100.0, 0.0).round() / 100.0)
+        .barometer_m(((FLOOR_ALTITUDE + drone.position().z) * 100.0).round() / 100.0)
         .motor_time(Duration::from_secs(motor_time.as_secs()));
     let percent = drone.charge.percent().floor() as i64;
     match Battery::from_percent(percent) {
@@ -30,6 +30,9 @@ pub(crate) fn sample(
         Err(_) => builder.build(),
     }
 }
+
+/// What the barometer shows at the floor, metres; real ones show anything, as they know no weather. Assumption.
+const FLOOR_ALTITUDE: f64 = 150.0;
 
 fn attitude(drone: &Drone, start_yaw: f64) -> Attitude {
     let (roll, pitch, _) = drone.world_from_body().rotation.euler_angles();

@@ -1,18 +1,19 @@
 //! Why a world cannot be built.
 
+use super::PRESETS;
+
 /// Why a world cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
     /// No preset has this name.
     #[error(
-        "no world is called {name:?}; use one of {known}, or generated:SEED with a whole number"
+        "no world is called {name:?}; use one of {}, or generated:SEED with a whole number",
+        PRESETS.join(", ")
     )]
     UnknownName {
         /// The name asked for.
         name: String,
-        /// The names there are.
-        known: &'static str,
     },
     /// The text is no floor plan.
     #[error("floor plan, line {line}: {reason}")]

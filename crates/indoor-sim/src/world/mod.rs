@@ -19,6 +19,7 @@ pub use floor_plan::{Door, FloorPlan, Furniture, Room, Start};
 pub use generator::generate;
 pub use landmark::Landmark;
 pub use presets::PRESETS;
+use presets::unknown;
 pub use reach::Reach;
 pub use solid::{Solid, SolidKind};
 pub use texture::TextureConfig;
@@ -53,11 +54,7 @@ impl World {
     /// [`WorldError::UnknownName`] lists the names there are.
     pub fn named(name: &str, seed: u64) -> Result<Self, WorldError> {
         if let Some(layout) = name.strip_prefix("generated:") {
-            let unknown = |_| WorldError::UnknownName {
-                name: name.to_owned(),
-                known: presets::KNOWN,
-            };
-            let layout: u64 = layout.parse().map_err(unknown)?;
+            let layout: u64 = layout.parse().map_err(|_| unknown(name))?;
             return Self::new(generate(layout)?, seed);
         }
         Self::new(presets::plan(name)?, seed)

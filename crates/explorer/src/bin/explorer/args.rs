@@ -99,8 +99,8 @@ impl Default for Demo {
     }
 }
 
-const WORLD_HELP: &str =
-    "A preset (apartment, one-door-room, two-rooms, closed-room) or generated:SEED";
+const WORLD_HELP: &str = "A preset (apartment, one-door-room, two-rooms, closed-room, corridor-four-doors, ring-corridor, office-six-rooms, \
+     cluttered-lab, dead-end-maze) or generated:SEED";
 
 #[derive(Debug, Args)]
 pub(crate) struct Pipeline {
