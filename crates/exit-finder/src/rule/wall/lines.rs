@@ -4,13 +4,12 @@
 //! Method: a Hough transform over pairs. Each bin is represented by three of its entries, pairs of
 //! representatives some degrees apart propose lines, and a line's score is how many representatives within ±60 degrees
 //! lie on it. The best one is fitted to all entries by least squares, its representatives are taken out, and so on.
-//! An entry that is taken
-//! proposes nothing any more, and scores only fall, so an old score is an upper bound and the next best is found by a lazy heap. No random numbers.
+//! An entry that is taken proposes nothing any more, and scores only fall, so an old score is an upper bound: proposals are kept in a list for
+//! each score, from the highest down, and move to a lower list when their score has fallen. No random numbers.
 //!
 //! Cost: O(bins · window) for the first scores, a constant of the profile.
 
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 use super::super::line::Line;
 use super::super::sight::Sight;
@@ -29,31 +28,35 @@ const SEEDS: usize = 360;
 /// Up to `most` lines with at least `least` representatives on each.
 pub(super) fn lines(sight: &Sight, most: usize, least: usize) -> Vec<Line> {
     let mut search = Search::new(sight);
-    let (proposals, mut heap) = search.proposals(least);
+    let (proposals, mut ranked) = search.proposals(least);
     let mut found = Vec::new();
-    while let Some(best) = heap.pop() {
-        if found.len() >= most {
-            break;
-        }
-        let Proposal { line, seeds } = proposals[best.index as usize];
-        let middle = best.middle as usize;
-        if seeds
-            .iter()
-            .any(|&(bin, k)| search.entries[k][bin].is_nan())
-        {
-            continue;
-        }
-        let score = search.score(&line, middle);
-        if score < best.score as usize {
-            if score >= least {
-                let score = score as u32;
-                heap.push(Ranked { score, ..best });
+    for score in (least..ranked.len()).rev() {
+        // Scores only fall, so nothing is added to this list any more.
+        let mut equal = std::mem::take(&mut ranked[score]);
+        equal.sort_unstable_by(Ranked::farther_first);
+        for best in equal {
+            if found.len() >= most {
+                return found;
             }
-            continue;
+            let Proposal { line, seeds } = proposals[best.index as usize];
+            let middle = best.middle as usize;
+            if seeds
+                .iter()
+                .any(|&(bin, k)| search.entries[k][bin].is_nan())
+            {
+                continue;
+            }
+            let now = search.score(&line, middle);
+            if now < score {
+                if now >= least {
+                    ranked[now].push(best);
+                }
+                continue;
+            }
+            let line = search.fitted(line, middle);
+            search.take_out(&line);
+            found.push(line);
         }
-        let line = search.fitted(line, middle);
-        search.take_out(&line);
-        found.push(line);
     }
     found
 }
@@ -66,41 +69,25 @@ struct Proposal {
     seeds: [(usize, usize); 2],
 }
 
-/// What the heap knows of a proposal: little, since it moves each one many times.
+/// What is moved of a proposal: little, since there are thousands.
 #[derive(Debug, Clone, Copy)]
 struct Ranked {
     /// Of the line from the agent, median ranges.
     distance: f64,
-    score: u32,
     /// Bin in the middle of the pair.
     middle: u32,
     /// Among the proposals.
     index: u32,
 }
 
-impl Ord for Ranked {
-    /// By score; of equal ones the farther line, which turning the profile does not change.
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.score
-            .cmp(&other.score)
-            .then(self.distance.total_cmp(&other.distance))
-            .then(other.middle.cmp(&self.middle))
+impl Ranked {
+    /// Of equal scores the farther line, which turning the profile does not change.
+    fn farther_first(&self, other: &Self) -> Ordering {
+        let distance = other.distance.total_cmp(&self.distance);
+        let middle = self.middle.cmp(&other.middle);
+        distance.then(middle).then(self.index.cmp(&other.index))
     }
 }
-
-impl PartialOrd for Ranked {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Ranked {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Ranked {}
 
 struct Search<'a> {
     sight: &'a Sight,
@@ -127,9 +114,11 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn proposals(&self, least: usize) -> (Vec<Proposal>, BinaryHeap<Ranked>) {
+    /// The lines to be tried, and by score which of them have it.
+    fn proposals(&self, least: usize) -> (Vec<Proposal>, Vec<Vec<Ranked>>) {
         let n = self.sight.n();
-        let (mut proposals, mut ranked) = (Vec::new(), Vec::new());
+        let mut proposals = Vec::new();
+        let mut ranked = vec![Vec::new(); 3 * (2 * self.half + 1) + 1];
         let apart = APART.map(|degrees| degrees * n / 360);
         for first in (0..n).step_by(n.div_ceil(SEEDS)) {
             for d in apart.into_iter().filter(|&d| d > 0) {
@@ -141,9 +130,8 @@ impl<'a> Search<'a> {
                     let middle = (first + d / 2) % n;
                     let score = self.score(&line, middle);
                     if score >= least {
-                        ranked.push(Ranked {
+                        ranked[score].push(Ranked {
                             distance: line.distance(),
-                            score: score as u32,
                             middle: middle as u32,
                             index: proposals.len() as u32,
                         });
@@ -152,7 +140,7 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        (proposals, BinaryHeap::from(ranked))
+        (proposals, ranked)
     }
 
     fn through(&self, seeds: [(usize, usize); 2]) -> Option<Line> {
