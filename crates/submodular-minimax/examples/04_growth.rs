@@ -6,6 +6,7 @@
 #[path = "../tests/labelled/mod.rs"]
 mod labelled;
 
+use labelled::cpu_seconds;
 use labelled::room::Room;
 use std::error::Error;
 use std::fmt::Write;
@@ -22,13 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if n > largest {
             break;
         }
-        let cloud = Room {
-            points: n,
-            outliers: 0.15,
-            patches: 100 + n / 50,
-            seed: 1,
-        }
-        .make();
+        let cloud = Room::for_timing(n).make();
         let (before, config) = (cpu_seconds()?, OutlierConfig::default());
         let repeats = (20_000 / n).max(1);
         for _ in 0..repeats {
@@ -43,13 +38,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(file, svg(&curve)?)?;
     }
     Ok(())
-}
-
-/// CPU time of this thread, from the scheduler's statistics of Linux.
-fn cpu_seconds() -> Result<f64, Box<dyn Error>> {
-    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat")?;
-    let nanoseconds = statistics.split(' ').next().unwrap_or_default();
-    Ok(nanoseconds.parse::<f64>()? / 1e9)
 }
 
 /// Points against seconds, both axes logarithmic, with a decade's grid and the line of linear growth.

@@ -8,6 +8,7 @@
 #[path = "../tests/labelled/mod.rs"]
 mod labelled;
 
+use labelled::cpu_seconds;
 use labelled::room::Room;
 use std::error::Error;
 use submodular_minimax::functions::{FacilityLocation, Kernel, Points};
@@ -23,13 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if n > largest {
             break;
         }
-        let cloud = Room {
-            points: n,
-            outliers: 0.15,
-            patches: 100 + n / 50,
-            seed: 1,
-        }
-        .make();
+        let cloud = Room::for_timing(n).make();
         for kernel in [
             Kernel::Rational { scale: 0.5 },
             Kernel::Rational { scale: 3.0 },
@@ -62,11 +57,4 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
-}
-
-/// CPU time of this thread, from the scheduler's statistics of Linux.
-fn cpu_seconds() -> Result<f64, Box<dyn Error>> {
-    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat")?;
-    let nanoseconds = statistics.split(' ').next().unwrap_or_default();
-    Ok(nanoseconds.parse::<f64>()? / 1e9)
 }

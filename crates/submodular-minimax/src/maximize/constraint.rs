@@ -5,6 +5,15 @@ use crate::subset::Subset;
 use thiserror::Error;
 
 /// Which sets a maximiser may return.
+///
+/// ```
+/// use submodular_minimax::functions::Modular;
+/// use submodular_minimax::maximize::{Constraint, Greedy, Maximizer};
+/// let worth = Modular { constant: 0.0, weights: vec![6.0, 5.0, 5.0] };
+/// let constraint = Constraint::Knapsack { costs: vec![3.0, 2.0, 2.0], budget: 4.0 };
+/// assert_eq!(Greedy { constraint }.maximize(&worth)?.picks, [1, 2]);
+/// # Ok::<(), submodular_minimax::maximize::MaximizeError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Constraint {

@@ -10,6 +10,18 @@ use crate::subset::Subset;
 use rand::{Rng, RngExt};
 
 /// Random greedy under a cardinality constraint. The same generator state gives the same set.
+///
+/// ```
+/// use rand_pcg::{Pcg64, rand_core::SeedableRng};
+/// use submodular_minimax::functions::{GraphCut, Sparse};
+/// use submodular_minimax::maximize::{Maximizer, RandomGreedy};
+/// let edges = vec![vec![(1, 1.0)], vec![(0, 1.0), (2, 1.0)], vec![(1, 1.0)]];
+/// let cut = GraphCut::new(Sparse::new(edges, 3)?)?;
+/// let mut rng = Pcg64::seed_from_u64(1);
+/// let found = RandomGreedy::cardinality(2, &mut rng).maximize(&cut)?;
+/// assert!(found.picks.len() <= 2 && found.value >= 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct RandomGreedy<'r, R> {
     constraint: Constraint,

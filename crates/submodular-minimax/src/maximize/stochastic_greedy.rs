@@ -11,6 +11,18 @@ use crate::subset::Subset;
 use rand::{Rng, RngExt};
 
 /// Stochastic greedy under a cardinality constraint. The same generator state gives the same set.
+///
+/// ```
+/// use rand_pcg::{Pcg64, rand_core::SeedableRng};
+/// use submodular_minimax::functions::{FacilityLocation, Kernel, Points};
+/// use submodular_minimax::maximize::{Maximizer, StochasticGreedy};
+/// let line: Vec<[f64; 3]> = (0..100).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+/// let function = FacilityLocation::new(Points::new(&line, Kernel::Linear { reach: 20.0 })?);
+/// let mut rng = Pcg64::seed_from_u64(1);
+/// let found = StochasticGreedy::cardinality(5, 0.1, &mut rng).maximize(&function)?;
+/// assert!(found.picks.len() == 5 && found.evaluations < 300);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct StochasticGreedy<'r, R> {
     constraint: Constraint,

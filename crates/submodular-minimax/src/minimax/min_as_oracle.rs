@@ -16,6 +16,20 @@ use crate::subset::Subset;
 /// The certificate brackets the max-min value: `lower_bound` is what the returned Y guarantees, the
 /// upper bound follows from g's submodularity.
 ///
+/// ```
+/// use submodular_minimax::functions::{Dense, Representation};
+/// use submodular_minimax::maximize::LazyGreedy;
+/// use submodular_minimax::minimax::min_as_oracle;
+/// use submodular_minimax::minimize::MinNormPoint;
+/// // Which demand costs most, once whoever loses more than 0.5 to it has moved for 0.5?
+/// let loss = Dense::new(2, 3, vec![0.9, 0.9, 0.0, 0.4, 0.4, 0.4])?;
+/// let function = Representation::new(loss, vec![0.5; 3], 0.0)?;
+/// let found = min_as_oracle(&function, &mut LazyGreedy::cardinality(1), &MinNormPoint::default())?;
+/// assert_eq!(found.y.iter().collect::<Vec<_>>(), [1]);
+/// assert!((found.value - 1.2).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Whatever the maximiser or the minimiser reports; a minimiser that fails on some Y makes the gain
 /// NaN, which the maximiser reports.

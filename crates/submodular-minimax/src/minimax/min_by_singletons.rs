@@ -17,6 +17,18 @@ use crate::subset::Subset;
 ///
 /// `oracle` only answers the final X, for the value and the certificate.
 ///
+/// ```
+/// use submodular_minimax::functions::{Dense, Representation};
+/// use submodular_minimax::maximize::LazyGreedy;
+/// use submodular_minimax::minimax::min_by_singletons;
+/// use submodular_minimax::minimize::MinNormPoint;
+/// let loss = Dense::new(2, 3, vec![0.9, 0.9, 0.0, 0.4, 0.4, 0.4])?;
+/// let function = Representation::new(loss, vec![0.3; 3], 0.0)?;
+/// let found = min_by_singletons(&function, &mut LazyGreedy::cardinality(1), &MinNormPoint::default())?;
+/// assert_eq!(found.x.iter().collect::<Vec<_>>(), [0, 1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Whatever the oracle or the minimiser reports.
 pub fn min_by_singletons<F: JointFunction + ?Sized>(

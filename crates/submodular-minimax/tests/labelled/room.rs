@@ -16,7 +16,17 @@ pub struct Room {
 }
 
 impl Room {
-    /// Two storeys of nothing: one floor of 12 x 7 x 2.6 m with a cross wall and furniture.
+    /// The cloud whose cleaning is timed: patches grow with the points, so that their density does not.
+    pub fn for_timing(points: usize) -> Self {
+        Self {
+            points,
+            outliers: 0.15,
+            patches: 100 + points / 50,
+            seed: 1,
+        }
+    }
+
+    /// One floor of 12 x 7 x 2.6 m with a cross wall and furniture.
     pub fn make(&self) -> Labelled {
         let mut rng = Pcg64::seed_from_u64(self.seed);
         let boxes = furniture(&mut rng);
