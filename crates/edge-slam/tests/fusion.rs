@@ -83,6 +83,7 @@ fn nees(seed: u64) -> f64 {
     error.dot(&(covariance.try_inverse().unwrap() * error))
 }
 
+/// With the default gates.
 #[test]
 fn the_error_is_as_great_as_the_covariance_says() {
     // χ² with 300 degrees of freedom, 95 % band, over 50 runs.
@@ -140,6 +141,7 @@ fn nees_with_scale(seed: u64, steps: u32, scale_sigma: f64, gate: f64) -> f64 {
     error.dot(&(ekf.covariance().try_inverse().unwrap() * error))
 }
 
+/// Without the gate: with it the filter is a little too sure of itself, which is printed (and said in the README), not asserted.
 #[test]
 fn with_an_unknown_scale_the_error_is_as_great_as_well() {
     // χ² with 350 degrees of freedom, 95 % band, over 50 runs.
