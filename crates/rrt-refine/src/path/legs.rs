@@ -241,4 +241,37 @@ mod tests {
         assert!(Path::new(&[[0.0], [1.0]])?.legs(1.0, 1e-200).is_err());
         Ok(())
     }
+
+    #[test]
+    fn segments_and_corners_are_cut_into_the_fewest_equal_parts() -> Result<(), PathError> {
+        let corner = Path::new(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]])?;
+        for (max_length, max_turn, lengths, turns) in [
+            (4.0, 2.0, 2, 1),
+            (3.0, 1.58, 2, 1),
+            (2.99, 1.57, 3, 2),
+            (1.0, 0.53, 4, 3),
+            (0.4, 0.1, 8 + 3, 16),
+        ] {
+            let legs = corner.legs(max_length, max_turn)?;
+            let is_turn = |leg: &&Leg<2>| matches!(leg, Leg::Turn { .. });
+            assert_eq!(legs.iter().filter(is_turn).count(), turns);
+            assert_eq!(legs.len() - turns, lengths);
+            for leg in legs {
+                if let Leg::Turn { angle, .. } = leg {
+                    assert!((angle - 0.5 * PI / turns as f64).abs() < 1e-12);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn more_than_ten_million_legs_are_refused_before_they_are_made() -> Result<(), PathError> {
+        // Nothing turns here, but three corners could turn half around.
+        let straight = Path::new(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])?;
+        assert_eq!(straight.legs(1.0, 1e-6)?.len(), 2);
+        assert!(straight.legs(1.0, 0.9e-6).is_err());
+        assert!(straight.legs(1e-7, 1.0).is_err());
+        Ok(())
+    }
 }

@@ -257,3 +257,65 @@ impl Edges {
 fn dearest_first(a: &Edge, b: &Edge) -> Ordering {
     b.sum.total_cmp(&a.sum).then(b.from.cmp(&a.from))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+    use std::cell::RefCell;
+
+    /// The least cost of a way to each vertex, all edges weighed and asked.
+    fn least_costs(points: &[[f64; 2]], free: &[Vec<bool>]) -> Vec<f64> {
+        let mut least = vec![f64::INFINITY; points.len()];
+        least[0] = 0.0;
+        for to in 1..points.len() {
+            for from in (0..to).filter(|&from| from + 1 == to || free[from][to]) {
+                least[to] = least[to].min(least[from] + distance(&points[from], &points[to]));
+            }
+        }
+        least
+    }
+
+    /// No motion is asked for that only ways use which are dearer than one that is known already.
+    fn check(points: &[[f64; 2]], free: &[Vec<bool>]) -> usize {
+        let asked = RefCell::new(Vec::new());
+        let index = |p: &[f64; 2]| points.iter().position(|q| q == p).unwrap_or_default();
+        let is_free = |a: &[f64; 2], b: &[f64; 2]| {
+            asked.borrow_mut().push((index(a), index(b)));
+            free[index(a)][index(b)]
+        };
+        let way = cheapest_way(points, &is_free, Known::SegmentsFree, usize::MAX, &distance);
+        let (least, last) = (least_costs(points, free), points.len() - 1);
+        assert!((way.cost - least[last]).abs() < 1e-9);
+        let rest = rest_of_way(points, Known::SegmentsFree, &distance);
+        let asked = asked.into_inner();
+        assert_eq!(asked.len(), way.checks);
+        for &(from, to) in asked.iter().filter(|&&edge| edge != (0, last)) {
+            assert!(from + 1 < to, "segments are known");
+            let limit = (0..to).map(|via| least[via] + rest[via]);
+            let limit = limit.fold(f64::INFINITY, f64::min);
+            let straight_on = least[from]
+                + distance(&points[from], &points[to])
+                + distance(&points[to], &points[last]);
+            assert!(straight_on <= limit * (1.0 + 1e-9), "{from} -> {to}");
+        }
+        asked.len()
+    }
+
+    #[test]
+    fn nothing_is_asked_that_could_not_make_the_way_cheaper() {
+        let mut rng = Pcg64::seed_from_u64(1);
+        let (mut asked, mut pairs) = (0, 0);
+        for _ in 0..300 {
+            let n = rng.random_range(3..12);
+            let mut place = || [rng.random::<f64>(), rng.random::<f64>()];
+            let points: Vec<[f64; 2]> = (0..n).map(|_| place()).collect();
+            let mut row = || (0..n).map(|_| rng.random_bool(0.3)).collect();
+            let free: Vec<Vec<bool>> = (0..n).map(|_| row()).collect();
+            asked += check(&points, &free);
+            pairs += (n - 1) * (n - 2) / 2;
+        }
+        assert!(2 * asked < pairs, "{asked} of {pairs}");
+    }
+}
