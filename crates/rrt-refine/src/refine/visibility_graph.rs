@@ -270,52 +270,65 @@ mod tests {
         let mut least = vec![f64::INFINITY; points.len()];
         least[0] = 0.0;
         for to in 1..points.len() {
-            for from in (0..to).filter(|&from| from + 1 == to || free[from][to]) {
+            for from in (0..to).filter(|&from| free[from][to]) {
                 least[to] = least[to].min(least[from] + distance(&points[from], &points[to]));
             }
         }
         least
     }
 
-    /// No motion is asked for that only ways use which are dearer than one that is known already.
-    fn check(points: &[[f64; 2]], free: &[Vec<bool>]) -> usize {
+    /// Asks for ways cheaper than the bound: the answer is the best of them, and no motion is asked for that leads past it.
+    fn check(points: &[[f64; 2]], free: &[Vec<bool>], bound: f64) -> usize {
         let asked = RefCell::new(Vec::new());
         let index = |p: &[f64; 2]| points.iter().position(|q| q == p).unwrap_or_default();
         let is_free = |a: &[f64; 2], b: &[f64; 2]| {
             asked.borrow_mut().push((index(a), index(b)));
             free[index(a)][index(b)]
         };
-        let way = cheapest_way(points, &is_free, Known::SegmentsFree, usize::MAX, &distance);
+        let known = Known::Bound(bound);
+        let way = cheapest_way(points, &is_free, known, usize::MAX, &distance);
         let (least, last) = (least_costs(points, free), points.len() - 1);
-        assert!((way.cost - least[last]).abs() < 1e-9);
-        let rest = rest_of_way(points, Known::SegmentsFree, &distance);
+        if least[last] < bound {
+            assert!((way.cost - least[last]).abs() < 1e-9);
+        } else {
+            assert_eq!(way.vertices, None);
+        }
         let asked = asked.into_inner();
         assert_eq!(asked.len(), way.checks);
-        for &(from, to) in asked.iter().filter(|&&edge| edge != (0, last)) {
-            assert!(from + 1 < to, "segments are known");
-            let limit = (0..to).map(|via| least[via] + rest[via]);
-            let limit = limit.fold(f64::INFINITY, f64::min);
-            let straight_on = least[from]
-                + distance(&points[from], &points[to])
-                + distance(&points[to], &points[last]);
-            assert!(straight_on <= limit * (1.0 + 1e-9), "{from} -> {to}");
+        for &(from, to) in &asked {
+            let ahead = distance(&points[to], &points[last]);
+            let straight_on = least[from] + distance(&points[from], &points[to]) + ahead;
+            assert!(straight_on <= bound * (1.0 + 1e-9), "{from} -> {to}");
         }
         asked.len()
     }
 
     #[test]
-    fn nothing_is_asked_that_could_not_make_the_way_cheaper() {
+    fn nothing_is_asked_that_leads_past_the_bound() {
         let mut rng = Pcg64::seed_from_u64(1);
-        let (mut asked, mut pairs) = (0, 0);
+        let mut asked = [0; 3];
         for _ in 0..300 {
             let n = rng.random_range(3..12);
             let mut place = || [rng.random::<f64>(), rng.random::<f64>()];
             let points: Vec<[f64; 2]> = (0..n).map(|_| place()).collect();
             let mut row = || (0..n).map(|_| rng.random_bool(0.3)).collect();
             let free: Vec<Vec<bool>> = (0..n).map(|_| row()).collect();
-            asked += check(&points, &free);
-            pairs += (n - 1) * (n - 2) / 2;
+            let straight = distance(&points[0], &points[n - 1]);
+            for (asked, share) in asked.iter_mut().zip([0.99, 1.2, 2.0]) {
+                *asked += check(&points, &free, share * straight);
+            }
         }
-        assert!(2 * asked < pairs, "{asked} of {pairs}");
+        assert!(asked[0] == 0 && asked[1] > 0 && 2 * asked[1] < asked[2]);
+    }
+
+    #[test]
+    fn a_dear_straight_way_still_bounds_the_search() {
+        // The straight way costs half more than its length; any other is longer.
+        let points = [[0.0, 0.0], [0.0, 3.0], [3.0, 3.0], [3.0, 1.0], [1.0, 0.0]];
+        let dear = |a: &[f64; 2], b: &[f64; 2]| 1.5 * distance(a, b);
+        let free = |_: &[f64; 2], _: &[f64; 2]| true;
+        let way = cheapest_way(&points, &free, Known::SegmentsFree, usize::MAX, &dear);
+        assert_eq!((way.vertices, way.checks), (Some(vec![0, 4]), 1));
+        assert!((way.cost - 1.5).abs() < 1e-12);
     }
 }

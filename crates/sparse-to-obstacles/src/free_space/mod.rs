@@ -264,4 +264,6 @@ fn contains((centre, radius): (Vec3, f64), point: Vec3) -> bool {
 }
 
 #[cfg(test)]
+mod proof_tests;
+#[cfg(test)]
 mod tests;
