@@ -1,4 +1,4 @@
-//! Cost of proving free space against the number of rays, with and without the space between them, and
+//! Cost of proving free space against the number of rays, with and without the space between them, and the size of voxels, and
 //! of its queries against the length of the motion.
 
 #![allow(clippy::expect_used, reason = "inputs are made here and must be good")]
@@ -69,6 +69,33 @@ fn build(c: &mut Criterion) {
     group.finish();
 }
 
+/// Against the voxels' size: the same rays, eight times as many voxels a step.
+fn resolution(c: &mut Criterion) {
+    let mut group = c.benchmark_group("free_space/resolution");
+    group.sample_size(10);
+    let surface = rooms::points(3_000, 1);
+    let (rays, motions) = (rays(30_000), rooms::motions(1_000, 1.0, 2));
+    for resolution in [0.2, 0.1, 0.05] {
+        let config = FreeSpaceConfig {
+            resolution,
+            ..FreeSpaceConfig::default()
+        };
+        let build =
+            || FreeSpace::from_rays(rays.iter().copied(), &surface, &config).expect("good input");
+        group.bench_function(BenchmarkId::new("from_rays", resolution), |b| b.iter(build));
+        let space = build();
+        group.bench_function(BenchmarkId::new("motion_is_free", resolution), |b| {
+            b.iter(|| {
+                let free = motions
+                    .iter()
+                    .filter(|m| space.motion_is_free(m.0, m.1, RADIUS));
+                free.count()
+            });
+        });
+    }
+    group.finish();
+}
+
 fn queries(c: &mut Criterion) {
     let mut group = c.benchmark_group("free_space/query");
     let surface = rooms::points(3_000, 1);
@@ -90,5 +117,5 @@ fn queries(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, build, queries);
+criterion_group!(benches, build, resolution, queries);
 criterion_main!(benches);
