@@ -20,6 +20,8 @@ pub(crate) struct Problem<'a, const D: usize, M> {
     checks: usize,
     /// Whether the straight motion was asked for, or is not to be.
     began: bool,
+    /// Why there is nothing more to search for.
+    pub(crate) settled: Option<Stop>,
     motion: &'a M,
 }
 
@@ -41,6 +43,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
             iterations: 0,
             checks: 0,
             began: !config.try_straight,
+            settled: None,
             motion,
         };
         if !problem.is_free(&query.start, &query.start) {
@@ -56,6 +59,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
             let goals = query.goals.len();
             return Err(PlanError::NoFreeGoal { goals });
         }
+        problem.settled = problem.goal_at_start().map(|_| Stop::Straight);
         Ok(problem)
     }
 
@@ -70,8 +74,12 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
         self.goals.iter().position(|goal| *goal == self.start)
     }
 
-    /// The nearest goal whose straight motion from the start is free.
-    pub(crate) fn straight_goal(&mut self) -> Option<usize> {
+    /// The nearest goal whose straight motion from the start is free; asked once a search, and not without a budget.
+    fn straight_goal(&mut self) -> Option<usize> {
+        let idle = self.settled.is_some() || self.config.max_iterations == 0;
+        if idle || std::mem::replace(&mut self.began, true) {
+            return None;
+        }
         let mut order: Vec<usize> = (0..self.goals.len()).collect();
         order.sort_by(|&a, &b| {
             distance(&self.start, &self.goals[a]).total_cmp(&distance(&self.start, &self.goals[b]))
@@ -79,7 +87,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
         let start = self.start;
         order.into_iter().find(|&goal| {
             let goal = self.goals[goal];
-            goal == start || self.is_free(&start, &goal)
+            self.is_free(&start, &goal)
         })
     }
 
@@ -93,12 +101,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
     }
 
     /// The answer: the path with the index of its goal among the free ones, if there is one.
-    pub(crate) fn plan(
-        &self,
-        found: Option<(Path<D>, usize)>,
-        stop: Stop,
-        nodes: usize,
-    ) -> Plan<D> {
+    fn plan(&self, found: Option<(Path<D>, usize)>, stop: Stop, nodes: usize) -> Plan<D> {
         let (path, goal) = found.unzip();
         Plan {
             path,
@@ -110,11 +113,6 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
         }
     }
 
-    /// Whether the straight motion is to be asked for now: once a search, and not without a budget.
-    fn begins_straight(&mut self) -> bool {
-        self.config.max_iterations > 0 && !std::mem::replace(&mut self.began, true)
-    }
-
     /// Takes one iteration from those `left`, or says why there is none.
     fn spend(
         &mut self,
@@ -123,6 +121,9 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
         length: Option<f64>,
         stop: &mut impl FnMut(&Progress) -> bool,
     ) -> Option<Stop> {
+        if self.settled.is_some() {
+            return self.settled;
+        }
         if *left == 0 {
             return Some(Stop::Iterations);
         }
@@ -147,27 +148,25 @@ impl<'a, const D: usize, M: MotionValidator<D>> Problem<'a, D, M> {
 /// What the planners do differently, and the loop around it.
 pub(crate) trait Search<'a, const D: usize, M: MotionValidator<D> + 'a> {
     fn problem(&mut self) -> &mut Problem<'a, D, M>;
-    /// Why there is nothing more to search for.
-    fn settled(&self) -> Option<Stop>;
-    /// Length of the best path so far, for planners that go on from there.
-    fn best_length(&self) -> Option<f64>;
     fn nodes(&self) -> usize;
-    /// Takes the straight motion to a goal where it is free.
-    fn try_straight(&mut self);
+    /// Length of the best path so far, for planners that go on from there.
+    fn best_length(&self) -> Option<f64> {
+        None
+    }
+    /// Takes the straight motion to the goal, which is free, and settles the search if nothing can be better.
+    fn go_straight(&mut self, goal: usize);
     /// One sample.
     fn grow(&mut self, rng: &mut impl Rng);
-    fn plan(&self, stop: Stop) -> Plan<D>;
+    /// The path so far, and which of the free goals it ends at.
+    fn found(&self) -> Option<(Path<D>, usize)>;
 
     /// Grows until there is nothing more to search for, `stop` returns true, or a budget is used up.
     fn run(&mut self, rng: &mut impl Rng, mut stop: impl FnMut(&Progress) -> bool) -> Plan<D> {
-        if self.settled().is_none() && self.problem().begins_straight() {
-            self.try_straight();
+        if let Some(goal) = self.problem().straight_goal() {
+            self.go_straight(goal);
         }
         let mut left = self.problem().config.max_iterations;
         let reason = loop {
-            if let Some(reason) = self.settled() {
-                break reason;
-            }
             let (nodes, length) = (self.nodes(), self.best_length());
             let spent = self.problem().spend(&mut left, nodes, length, &mut stop);
             if let Some(reason) = spent {
@@ -175,7 +174,8 @@ pub(crate) trait Search<'a, const D: usize, M: MotionValidator<D> + 'a> {
             }
             self.grow(rng);
         };
-        self.plan(reason)
+        let (found, nodes) = (self.found(), self.nodes());
+        self.problem().plan(found, reason, nodes)
     }
 }
 

@@ -47,8 +47,8 @@ pub fn rrt<const D: usize>(
 pub struct Rrt<'a, const D: usize, M> {
     problem: Problem<'a, D, M>,
     tree: Tree<D>,
-    /// Node at a goal, that goal, and how it was reached.
-    found: Option<(usize, usize, Stop)>,
+    /// Node at a goal, and that goal.
+    found: Option<(usize, usize)>,
 }
 
 impl<'a, const D: usize, M: MotionValidator<D>> Rrt<'a, D, M> {
@@ -64,9 +64,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> Rrt<'a, D, M> {
         let problem = Problem::new(query, motion_is_free, config)?;
         Ok(Self {
             tree: Tree::with_roots(&[problem.start]),
-            found: problem
-                .goal_at_start()
-                .map(|goal| (0, goal, Stop::Straight)),
+            found: problem.goal_at_start().map(|goal| (0, goal)),
             problem,
         })
     }
@@ -77,6 +75,16 @@ impl<'a, const D: usize, M: MotionValidator<D>> Rrt<'a, D, M> {
     pub fn advance(&mut self, rng: &mut impl Rng, stop: impl FnMut(&Progress) -> bool) -> Plan<D> {
         self.run(rng, stop)
     }
+
+    /// The branch that ends at `node` goes on to the goal, unless it is there already.
+    fn end_at(&mut self, goal: usize, mut node: usize, how: Stop) {
+        let end = self.problem.goals[goal];
+        if *self.tree.point(node) != end {
+            node = self.tree.push(end, node);
+        }
+        self.found = Some((node, goal));
+        self.problem.settled = Some(how);
+    }
 }
 
 impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for Rrt<'a, D, M> {
@@ -84,23 +92,12 @@ impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for Rrt<'a, D, 
         &mut self.problem
     }
 
-    fn settled(&self) -> Option<Stop> {
-        self.found.map(|(_, _, how)| how)
-    }
-
-    fn best_length(&self) -> Option<f64> {
-        None
-    }
-
     fn nodes(&self) -> usize {
         self.tree.len()
     }
 
-    fn try_straight(&mut self) {
-        if let Some(goal) = self.problem.straight_goal() {
-            let node = self.tree.push(self.problem.goals[goal], 0);
-            self.found = Some((node, goal, Stop::Straight));
-        }
+    fn go_straight(&mut self, goal: usize) {
+        self.end_at(goal, 0, Stop::Straight);
     }
 
     fn grow(&mut self, rng: &mut impl Rng) {
@@ -115,24 +112,17 @@ impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for Rrt<'a, D, 
         let node = self.tree.push(to, parent);
         for goal in 0..self.problem.goals.len() {
             let end = self.problem.goals[goal];
-            if end == to {
-                self.found = Some((node, goal, Stop::Reached));
-                return;
-            }
-            if distance(&to, &end) <= step && self.problem.is_free(&to, &end) {
-                let node = self.tree.push(end, node);
-                self.found = Some((node, goal, Stop::Reached));
-                return;
+            let near = distance(&to, &end) <= step;
+            if end == to || near && self.problem.is_free(&to, &end) {
+                return self.end_at(goal, node, Stop::Reached);
             }
         }
     }
 
-    fn plan(&self, stop: Stop) -> Plan<D> {
-        let found = self.found.map(|(node, goal, _)| {
-            let chain = self.tree.ancestry(node);
-            let points = chain.iter().rev().map(|&n| *self.tree.point(n)).collect();
-            (Path::from_vertices(points), goal)
-        });
-        self.problem.plan(found, stop, self.tree.len())
+    fn found(&self) -> Option<(Path<D>, usize)> {
+        let (node, goal) = self.found?;
+        let chain = self.tree.ancestry(node);
+        let points = chain.iter().rev().map(|&n| *self.tree.point(n)).collect();
+        Some((Path::from_vertices(points), goal))
     }
 }

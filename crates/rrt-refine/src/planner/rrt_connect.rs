@@ -45,8 +45,8 @@ pub struct RrtConnect<'a, const D: usize, M> {
     from_start: Tree<D>,
     from_goals: Tree<D>,
     start_grows: bool,
-    /// Meeting node in either tree, and how it was reached.
-    found: Option<(usize, usize, Stop)>,
+    /// Meeting node in either tree.
+    found: Option<(usize, usize)>,
 }
 
 /// Which way a tree is travelled: from its root, or towards it.
@@ -71,9 +71,7 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtConnect<'a, D, M> {
             from_start: Tree::with_roots(&[problem.start]),
             from_goals: Tree::with_roots(&problem.goals),
             start_grows: true,
-            found: problem
-                .goal_at_start()
-                .map(|goal| (0, goal, Stop::Straight)),
+            found: problem.goal_at_start().map(|goal| (0, goal)),
             problem,
         })
     }
@@ -91,23 +89,15 @@ impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for RrtConnect<
         &mut self.problem
     }
 
-    fn settled(&self) -> Option<Stop> {
-        self.found.map(|(_, _, how)| how)
-    }
-
-    fn best_length(&self) -> Option<f64> {
-        None
-    }
-
     fn nodes(&self) -> usize {
         self.from_start.len() + self.from_goals.len()
     }
 
-    fn try_straight(&mut self) {
-        if let Some(goal) = self.problem.straight_goal() {
-            let node = self.from_start.push(self.problem.goals[goal], 0);
-            self.found = Some((node, goal, Stop::Straight));
-        }
+    fn go_straight(&mut self, goal: usize) {
+        let node = self.from_start.push(self.problem.goals[goal], 0);
+        // The goals are the roots, in their order.
+        self.found = Some((node, goal));
+        self.problem.settled = Some(Stop::Straight);
     }
 
     /// One tree steps towards a sample, the other walks to where it came; the next time the other way round.
@@ -132,27 +122,24 @@ impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for RrtConnect<
         let target = *stepping.point(node);
         let room = problem.config.max_nodes.saturating_sub(stepping.len());
         if let Some(other) = walk(problem, walking, &target, travel.back(), room) {
-            let (start_side, goal_side) = if start_grows {
+            self.found = Some(if start_grows {
                 (node, other)
             } else {
                 (other, node)
-            };
-            self.found = Some((start_side, goal_side, Stop::Reached));
+            });
+            problem.settled = Some(Stop::Reached);
         }
     }
 
-    fn plan(&self, stop: Stop) -> Plan<D> {
-        let found = self.found.map(|(start_side, goal_side, _)| {
-            let up = self.from_start.ancestry(start_side);
-            let down = self.from_goals.ancestry(goal_side);
-            let before = up.iter().rev().map(|&node| *self.from_start.point(node));
-            // Both trees hold the meeting point.
-            let after = down[1..].iter().map(|&node| *self.from_goals.point(node));
-            // The goals are the roots, in their order.
-            let goal = down[down.len() - 1];
-            (Path::from_vertices(before.chain(after).collect()), goal)
-        });
-        self.problem.plan(found, stop, self.nodes())
+    fn found(&self) -> Option<(Path<D>, usize)> {
+        let (start_side, goal_side) = self.found?;
+        let up = self.from_start.ancestry(start_side);
+        let down = self.from_goals.ancestry(goal_side);
+        let before = up.iter().rev().map(|&node| *self.from_start.point(node));
+        // Both trees hold the meeting point.
+        let after = down[1..].iter().map(|&node| *self.from_goals.point(node));
+        let path = Path::from_vertices(before.chain(after).collect());
+        Some((path, down[down.len() - 1]))
     }
 }
 

@@ -59,8 +59,6 @@ pub struct RrtStar<'a, const D: usize, M> {
     tree: CostTree<D>,
     /// Node at each goal, once there is one.
     goal_nodes: Vec<Option<usize>>,
-    /// Nothing is shorter than the path known.
-    straight: bool,
 }
 
 impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
@@ -81,7 +79,6 @@ impl<'a, const D: usize, M: MotionValidator<D>> RrtStar<'a, D, M> {
         }
         Ok(Self {
             tree: CostTree::with_root(problem.start),
-            straight: goal_nodes.contains(&Some(0)),
             config: *config,
             goal_nodes,
             problem,
@@ -200,10 +197,6 @@ impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for RrtStar<'a,
         &mut self.problem
     }
 
-    fn settled(&self) -> Option<Stop> {
-        self.straight.then_some(Stop::Straight)
-    }
-
     fn best_length(&self) -> Option<f64> {
         self.best().map(|(_, length)| length)
     }
@@ -213,14 +206,14 @@ impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for RrtStar<'a,
     }
 
     /// Only when the nearest goal is seen straight away is no path shorter.
-    fn try_straight(&mut self) {
-        if let Some(goal) = self.problem.straight_goal() {
-            let node = self.tree.push(self.problem.goals[goal], 0);
-            self.goal_nodes[goal] = Some(node);
-            let length = self.tree.cost(node);
-            let goals = self.problem.goals.iter();
-            let mut gaps = goals.map(|other| distance(&self.problem.start, other));
-            self.straight = gaps.all(|gap| length <= gap);
+    fn go_straight(&mut self, goal: usize) {
+        let node = self.tree.push(self.problem.goals[goal], 0);
+        self.goal_nodes[goal] = Some(node);
+        let length = self.tree.cost(node);
+        let goals = self.problem.goals.iter();
+        let mut gaps = goals.map(|other| distance(&self.problem.start, other));
+        if gaps.all(|gap| length <= gap) {
+            self.problem.settled = Some(Stop::Straight);
         }
     }
 
@@ -246,11 +239,9 @@ impl<'a, const D: usize, M: MotionValidator<D>> Search<'a, D, M> for RrtStar<'a,
         }
     }
 
-    fn plan(&self, stop: Stop) -> Plan<D> {
-        let found = self.best().and_then(|(goal, _)| {
-            let way = self.tree.way_to(self.goal_nodes[goal]?);
-            Some((Path::from_vertices(way), goal))
-        });
-        self.problem.plan(found, stop, self.tree.len())
+    fn found(&self) -> Option<(Path<D>, usize)> {
+        let (goal, _) = self.best()?;
+        let way = self.tree.way_to(self.goal_nodes[goal]?);
+        Some((Path::from_vertices(way), goal))
     }
 }
