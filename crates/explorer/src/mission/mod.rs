@@ -267,9 +267,9 @@ impl Mission {
             return None;
         }
         let moving = self.pilot.is_moving();
-        let way_back = self.way_back();
+        let recover = self.recover();
         self.shared.log(Event::Lost);
-        self.phase = Phase::Recover(Recover::new(way_back));
+        self.phase = Phase::Recover(recover);
         if !moving {
             return None;
         }
@@ -279,13 +279,15 @@ impl Mission {
 
     /// Back to the last scan, but only along the move in flight where that is broken off: how far it came is a guess, and the moves before
     /// it would be undone from beside where they ended.
-    fn way_back(&mut self) -> Vec<Command> {
+    fn recover(&mut self) -> Recover {
         let now = self.shared.knowledge.now();
         let flown = self.shared.retreat.take();
         match self.pilot.undo_last(now) {
-            Undo::Nothing => flown,
-            Undo::Whole(command) => [command].into_iter().chain(flown).collect(),
-            Undo::Part(command) => command.into_iter().collect(),
+            Undo::Nothing => Recover::new(flown),
+            Undo::Whole(command) => {
+                Recover::after_move([command].into_iter().chain(flown).collect())
+            }
+            Undo::Part(command) => Recover::new(command.into_iter().collect()),
         }
     }
 }

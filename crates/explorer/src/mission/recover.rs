@@ -23,7 +23,7 @@ const LOOKS: usize = 24;
 pub(super) struct Recover {
     /// What is left of the way back, the next move last.
     way_back: Vec<Command>,
-    /// A move of the way back is in flight or has just ended.
+    /// A move that the rest of the way back begins at the end of is in flight or has just ended.
     on_the_way: bool,
     began: Option<Duration>,
     looks: usize,
@@ -31,11 +31,20 @@ pub(super) struct Recover {
 
 impl Recover {
     /// After losing the pose with this way back, the next move first.
-    pub(super) fn new(mut way_back: Vec<Command>) -> Self {
+    pub(super) fn new(way_back: Vec<Command>) -> Self {
+        Self::starting(way_back, false)
+    }
+
+    /// The same while a move is under way whose whole is to be undone first: it has to be done for that.
+    pub(super) fn after_move(way_back: Vec<Command>) -> Self {
+        Self::starting(way_back, true)
+    }
+
+    fn starting(mut way_back: Vec<Command>, on_the_way: bool) -> Self {
         way_back.reverse();
         Self {
             way_back,
-            on_the_way: false,
+            on_the_way,
             began: None,
             looks: 0,
         }
@@ -51,8 +60,14 @@ impl Recover {
         if now < began + PATIENCE {
             return Step::Wait;
         }
-        if self.on_the_way && context.last_outcome() != Some(&CommandOutcome::Done) {
-            // Nobody knows where the drone is on it.
+        let is_lost = match context.last_outcome() {
+            Some(CommandOutcome::Unknown) => true,
+            // A leg that was stopped may be refused; how far it came has been allowed for.
+            Some(CommandOutcome::Refused(_)) => self.on_the_way,
+            Some(CommandOutcome::Done) | None => false,
+        };
+        if is_lost {
+            // Nobody knows where the drone is on the way back, or whether it has turned.
             self.way_back.clear();
         }
         self.on_the_way = false;
@@ -76,7 +91,7 @@ impl Recover {
 #[cfg(test)]
 mod tests {
     use super::super::drawn::Drawn;
-    use super::super::maneuver::{back, forward, left, right};
+    use super::super::maneuver::{Maneuver, back, forward, left, right};
     use super::super::pilot::Finished;
     use super::super::{Input, Mission, Output};
     use super::*;
@@ -133,6 +148,35 @@ mod tests {
             mission.shared.retreat.take().is_empty(),
             "nothing is undone twice"
         );
+    }
+
+    /// What is sent first after the pose was lost during this command, which then ended so.
+    fn lost_during(during: Option<Command>, outcome: CommandOutcome) -> Option<Command> {
+        let mut mission = lost();
+        mission.phase = Phase::Triangle(Maneuver::default());
+        mission
+            .pilot
+            .start(during.unwrap(), &mission.shared.knowledge);
+        // The pose is lost; a leg is stopped, a turn runs on.
+        frame(&mut mission, 1000);
+        frame(&mut mission, 4000);
+        assert!(matches!(mission.phase, Phase::Recover(_)));
+        mission.handle(Input::Answer(outcome));
+        let mut sent = (41..60).filter_map(|tenths| command(&mut mission, 100 * tenths));
+        sent.next()
+    }
+
+    #[test]
+    fn after_a_turn_that_was_not_done_nothing_is_flown_blind() {
+        let refused = || CommandOutcome::Refused("error".to_owned());
+        assert_eq!(lost_during(turn(0.5), CommandOutcome::Done), turn(-0.5));
+        assert_eq!(lost_during(turn(0.5), refused()), turn(LOOK));
+        assert_eq!(lost_during(turn(0.5), CommandOutcome::Unknown), turn(LOOK));
+        // A leg that was stopped is undone in part, unless it may never have begun.
+        let back = |sent: Option<Command>| matches!(sent, Some(Command::Back(_)));
+        assert!(back(lost_during(forward(60), CommandOutcome::Done)));
+        assert!(back(lost_during(forward(60), refused())));
+        assert!(!back(lost_during(forward(60), CommandOutcome::Unknown)));
     }
 
     #[test]

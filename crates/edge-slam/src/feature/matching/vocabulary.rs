@@ -35,6 +35,9 @@ impl Default for VocabularyConfig {
     }
 }
 
+/// Most splits from the root to a word.
+const MOST_DEPTH: usize = 8;
+
 /// Why there is no vocabulary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -76,7 +79,7 @@ impl VocabularyConfig {
     pub fn validate(&self) -> Result<(), VocabularyError> {
         let fields = [
             ("branching", self.branching, 2, 64),
-            ("depth", self.depth, 1, 8),
+            ("depth", self.depth, 1, MOST_DEPTH),
             ("iterations", self.iterations, 1, 1_000),
         ];
         for (name, value, min, max) in fields {
@@ -244,6 +247,8 @@ impl Vocabulary {
     /// as one. Level 0 puts all together; the greater the level, the fewer share a node.
     #[must_use]
     pub fn direct_index(&self, descriptors: &[Descriptor], level: usize) -> DirectIndex {
+        // No tree is deeper, and a word is its own child.
+        let level = level.min(MOST_DEPTH);
         let node = |descriptor| (0..level).fold(0, |node, _| self.child(node, descriptor));
         DirectIndex::new(descriptors, descriptors.iter().map(node))
     }
@@ -318,6 +323,7 @@ mod tests {
         fn equal_descriptors_are_found_at_every_level(a in descriptors(40), seed in any::<u64>(), level in 0_usize..5) {
             let Some(vocabulary) = trained(&[&a], &VocabularyConfig::default(), seed) else { return Ok(()) };
             let index = vocabulary.direct_index(&a, level);
+            prop_assert_eq!(vocabulary.direct_index(&a, usize::MAX), vocabulary.direct_index(&a, 3));
             let config = MatchConfig { max_distance: 0, ratio: 1.0, mutual: true };
             prop_assert_eq!(match_by_node(&index, &index, &config), match_descriptors(&a, &a, &config));
         }
