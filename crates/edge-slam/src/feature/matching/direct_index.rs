@@ -1,7 +1,7 @@
 //! Hamming matching within the nodes of a vocabulary tree (the direct index of Gálvez-López & Tardós 2012).
 //!
 //! Near descriptors mostly go down a tree together, so that only those of the same node are compared. Those that part on the way
-//! are lost, and a second nearest in another node is not seen by the ratio test: figures in the README.
+//! are lost, and a second nearest in another node is not seen by the ratio test: figures in `docs/measurements.md`.
 
 use super::{Match, MatchConfig, Nearest};
 use crate::feature::Descriptor;

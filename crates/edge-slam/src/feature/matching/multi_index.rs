@@ -30,7 +30,7 @@ pub struct MultiIndex {
 /// [`super::match_descriptors`].
 ///
 /// Pays where near copies are sought among tens of thousands; two frames of a thousand are matched faster by comparing all
-/// (figures in the README). The first side is searched for the mutual test only.
+/// (figures in `docs/measurements.md`). The first side is searched for the mutual test only.
 ///
 /// ```
 /// use edge_slam::feature::{Descriptor, MatchConfig, MultiIndex, match_indexed};
