@@ -7,7 +7,7 @@
 
 use nalgebra::Point3;
 use rand::Rng;
-use rrt_refine::{Bounds, Path, Query, RrtConfig, refine, rrt};
+use rrt_refine::{Bounds, MotionValidator, Path, Query, RrtConfig, refine, rrt};
 
 use crate::config::ExplorationConfig;
 use crate::reach::Reach;
@@ -50,16 +50,13 @@ impl Route {
     /// A path that needs no planning, refined for a ball of `radius`; all in map units, start first.
     #[must_use]
     pub fn along(scene: &Scene, raw: Vec<[f64; 3]>, radius: f64) -> Self {
-        let free =
-            |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
-        let path = Path::new(&raw).map_or_else(
-            |_| raw.clone(),
-            |path| refine::dag(&path, &free).path.into_points(),
-        );
-        Self {
-            raw,
-            path,
-            by_tree: false,
+        match Path::new(&raw) {
+            Ok(path) => Self::refined(path, false, &free_for(scene, radius)),
+            Err(_) => Self {
+                path: raw.clone(),
+                raw,
+                by_tree: false,
+            },
         }
     }
 
@@ -74,41 +71,42 @@ impl Route {
         stages: &mut dyn StageObserver,
     ) -> Option<Self> {
         let way = reach.path_to(index);
-        let narrowest = way
-            .iter()
-            .fold(f64::INFINITY, |least, place| least.min(place.clearance));
-        let flooded: Vec<[f64; 3]> = way.iter().map(|place| place.position.into()).collect();
+        let roomy = way.iter().all(|at| at.clearance >= radii.comfortable);
+        let flooded: Vec<[f64; 3]> = way.iter().map(|at| at.position.into()).collect();
         let tree = staged(stages, Stage::Plan, || {
-            (narrowest >= radii.comfortable)
-                .then(|| grow(scene, reach, &flooded, radii.comfortable, config, rng))
-                .flatten()
+            let tree = || grow(scene, reach, &flooded, radii.comfortable, config, rng);
+            roomy.then(tree).flatten()
         });
         let by_tree = tree.is_some();
-        let raw = match tree {
-            Some(path) => path,
-            None => Path::new(&flooded).ok()?,
-        };
-        let refined = staged(stages, Stage::Refine, || {
-            let free =
-                |a: &[f64; 3], b: &[f64; 3]| is_roomy(scene, &(*a).into(), &(*b).into(), radii);
-            refine::dag(&raw, &free)
-        });
-        Some(Self {
+        let raw = tree.or_else(|| Path::new(&flooded).ok())?;
+        let free = |a: &[f64; 3], b: &[f64; 3]| is_roomy(scene, a, b, radii);
+        Some(staged(stages, Stage::Refine, || {
+            Self::refined(raw, by_tree, &free)
+        }))
+    }
+
+    fn refined(raw: Path<3>, by_tree: bool, free: &impl MotionValidator<3>) -> Self {
+        Self {
+            path: refine::dag(&raw, free).path.into_points(),
             raw: raw.into_points(),
-            path: refined.path.into_points(),
             by_tree,
-        })
+        }
     }
 }
 
+/// Whether a ball of `radius` may go straight from one place to another.
+fn free_for(scene: &Scene, radius: f64) -> impl Fn(&[f64; 3], &[f64; 3]) -> bool {
+    move |&a, &b| scene.motion_is_free(&a.into(), &b.into(), radius)
+}
+
 /// Whether the straight way has the room all along that its tighter end has.
-fn is_roomy(scene: &Scene, a: &Point3<f64>, b: &Point3<f64>, radii: RouteRadii) -> bool {
-    if !scene.motion_is_free(a, b, radii.least) {
+fn is_roomy(scene: &Scene, a: &[f64; 3], b: &[f64; 3], radii: RouteRadii) -> bool {
+    if !free_for(scene, radii.least)(a, b) {
         return false;
     }
-    let room = |place| scene.clearance(place, radii.comfortable);
+    let room = |&place: &[f64; 3]| scene.clearance(&place.into(), radii.comfortable);
     let radius = SHORTCUT_ROOM * room(a).min(room(b));
-    radius <= radii.least || scene.motion_is_free(a, b, radius)
+    radius <= radii.least || free_for(scene, radius)(a, b)
 }
 
 /// One tree from the first to the last of the flooded places.
@@ -120,8 +118,6 @@ fn grow(
     config: &ExplorationConfig,
     rng: &mut impl Rng,
 ) -> Option<Path<3>> {
-    let free =
-        |a: &[f64; 3], b: &[f64; 3]| scene.motion_is_free(&(*a).into(), &(*b).into(), radius);
     let corners: Vec<[f64; 3]> = reach.positions().map(Into::into).collect();
     let bounds = Bounds::around(&corners, scene.units(config.rrt_step_m)).ok()?;
     let settings = RrtConfig {
@@ -130,5 +126,6 @@ fn grow(
         ..RrtConfig::default()
     };
     let query = Query::new(*flooded.first()?, *flooded.last()?, bounds);
+    let free = free_for(scene, radius);
     rrt(&query, &free, &settings, rng).ok()?.path
 }
