@@ -165,8 +165,13 @@ fn clean_writes_a_score_a_point_and_says_when_it_judged_none() {
         .collect();
     assert_eq!(report["removed_indices"], Value::from(removed));
     assert_eq!(text.lines().count() as u64 - 1, report["points"]);
-    let line = complaint(&["clean", &input, "--scores", &scores, "--method", "sor"]);
+    let kept = folder.join("kept.ply");
+    let kept_name = kept.display().to_string();
+    let line = complaint(&[
+        "clean", &input, "--scores", &scores, "-o", &kept_name, "--method", "sor",
+    ]);
     assert!(line.contains("a baseline gives no scores"), "{line}");
+    assert!(!kept.exists(), "refused before anything is written");
     let refused = explorer(&["clean", &input, "-o", "kept.txt"]);
     assert_eq!(refused.status.code(), Some(2));
     for rows in [

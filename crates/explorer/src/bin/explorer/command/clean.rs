@@ -59,6 +59,14 @@ pub(crate) fn run(arguments: &Clean, output: &Output) -> Result<(), Failure> {
         arguments.repeat,
     )?;
     drop(progress);
+    let scores = match (&arguments.scores, &report.scores) {
+        (Some(path), Some(scores)) => Some((path, scores)),
+        (Some(_), None) => {
+            let advice = "leave --scores out or take a --method that is no baseline";
+            return Err(Failure::new("a baseline gives no scores", advice));
+        }
+        (None, _) => None,
+    };
     if let Some(path) = &arguments.output {
         if report.kept == 0 {
             return Err(Failure::new(
@@ -72,11 +80,7 @@ pub(crate) fn run(arguments: &Clean, output: &Output) -> Result<(), Failure> {
         let kept = loaded.map.with_points_at(&report.kept_indices);
         write_file(path, |file| write_ply(&kept, file))?;
     }
-    if let Some(path) = &arguments.scores {
-        let scores = report.scores.as_ref().ok_or_else(|| {
-            let advice = "leave --scores out or take a --method that is no baseline";
-            Failure::new("a baseline gives no scores", advice)
-        })?;
+    if let Some((path, scores)) = scores {
         write_file(path, |file| write_scores(scores, file))?;
     }
     deliver(output, &report, &text(&report), || {
