@@ -1,7 +1,7 @@
 //! How short each refiner makes the paths of RRT, and for how many checks, over 60 random worlds of discs.
 //!
 //! A square of 20 with 55 discs of radius 0.5 to 1.2, RRT with a step of 0.8 from corner to corner. Lengths are over the
-//! best of all refiners in that world. Prints the table of the README:
+//! best of all refiners in that world. Prints the table of docs/measurements.md:
 //! `cargo run --release -p rrt-refine --example 03_disc_worlds`
 
 #![allow(clippy::print_stdout, reason = "an example prints its result")]

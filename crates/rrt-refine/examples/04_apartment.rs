@@ -1,7 +1,7 @@
 //! Fifty queries through the doors of a furnished apartment: planning and refining against its true boxes.
 //!
 //! Needs the data folder (`EXPLORER_DATA`). A ball of 0.15 m, exact swept checks. Times are the best of three runs of a
-//! query, then the median over the queries; lengths are over the shorter of the two RRT*. Prints the table of the README:
+//! query, then the median over the queries; lengths are over the shorter of the two RRT*. Prints the table of docs/measurements.md:
 //! `cargo run --release -p rrt-refine --example 04_apartment`
 
 #[path = "../tests/scene/mod.rs"]
