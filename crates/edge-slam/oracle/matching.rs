@@ -36,6 +36,9 @@ use slam_bridge::read_tum;
 
 type Failure = Box<dyn Error>;
 
+/// The last is matched against up to 100 others, and none of the ten before it.
+const LEAST_FRAMES: usize = 111;
+
 /// Descriptors and time of each frame.
 struct Frames {
     descriptors: Vec<Vec<Descriptor>>,
@@ -69,7 +72,11 @@ fn main() -> Result<(), Failure> {
     };
     let truth = read_tum(BufReader::new(File::open(truth)?))?;
     let (kitchen, other) = (Frames::read(kitchen)?, Frames::read(other)?);
-    let half = kitchen.descriptors.len() / 2;
+    let count = kitchen.descriptors.len();
+    if count < LEAST_FRAMES {
+        return Err(format!("KITCHEN has {count} frames, {LEAST_FRAMES} are needed").into());
+    }
+    let half = count / 2;
     let origin = Instant::now();
     for (name, images) in [
         ("the kitchen's first half", kitchen.every_fifth(half)),

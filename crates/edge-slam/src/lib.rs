@@ -1,4 +1,7 @@
-#![doc = include_str!("../README.md")]
+//! Monocular edge-aware visual-inertial SLAM in small pure steps.
+//!
+// An example of the README reads recorded pictures.
+#![cfg_attr(feature = "image-files", doc = include_str!("../README.md"))]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
     reason = "a negated comparison refuses NaN as well"

@@ -86,7 +86,7 @@ pub(crate) struct Demo {
     /// Folder for the report and the files beside it; made when missing.
     #[arg(short, long, value_name = "DIR", default_value = "explorer-out")]
     pub(crate) output: PathBuf,
-    #[arg(long, value_name = "W", default_value = "apartment", help = WORLD_HELP)]
+    #[arg(long, value_name = "W", default_value = "apartment", help = world_help())]
     pub(crate) world: String,
 }
 
@@ -99,8 +99,12 @@ impl Default for Demo {
     }
 }
 
-const WORLD_HELP: &str = "A preset (apartment, one-door-room, two-rooms, closed-room, corridor-four-doors, ring-corridor, office-six-rooms, \
-     cluttered-lab, dead-end-maze) or generated:SEED";
+fn world_help() -> String {
+    format!(
+        "A preset ({}) or generated:SEED",
+        indoor_sim::PRESETS.join(", ")
+    )
+}
 
 #[derive(Debug, Args)]
 pub(crate) struct Pipeline {
@@ -283,7 +287,7 @@ pub(crate) enum SpaceChoice {
 
 #[derive(Debug, Args)]
 pub(crate) struct Simulate {
-    #[arg(long, value_name = "W", help = WORLD_HELP)]
+    #[arg(long, value_name = "W", help = world_help())]
     pub(crate) world: String,
     /// Missions to fly, with seeds N, N + 1 and so on.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
