@@ -306,6 +306,6 @@ fn in_map(pose: &LevelPose, flown: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// An angle in (−π, π].
-fn wrap(angle: f64) -> f64 {
+pub(super) fn wrap(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }

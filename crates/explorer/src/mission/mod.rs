@@ -287,7 +287,7 @@ impl Mission {
             Undo::Whole(command) => {
                 Recover::after_move([command].into_iter().chain(flown).collect())
             }
-            Undo::Part(command) => Recover::new(command.into_iter().collect()),
+            Undo::Part(command) => Recover::broken_off(command),
         }
     }
 }

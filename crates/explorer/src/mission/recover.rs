@@ -1,10 +1,11 @@
-//! Find the lost pose again: back along the moves since the last scan, then look around.
+//! Find the lost pose again: look around, then go back along the moves since the last scan and look around there.
 
 use core::f64::consts::TAU;
 use core::time::Duration;
 
 use super::context::Context;
 use super::event::Event;
+use super::fly::wrap;
 use super::maneuver::{climb, turn};
 use super::outcome::Outcome;
 use super::phase::{Phase, Step};
@@ -16,37 +17,64 @@ use tello_sdk::Command;
 const PATIENCE: Duration = Duration::from_millis(800);
 /// Step of the look around, radians.
 const LOOK: f64 = TAU / 12.0;
-/// A full look around at each of two heights.
-const LOOKS: usize = 24;
+/// Looks of one turn. The first is made where the pose was lost, which mostly is enough and loses no ground.
+const ROUND: usize = 12;
 
 #[derive(Debug)]
 pub(super) struct Recover {
+    /// What undoes a move that was broken off or turned the view away: done before any look.
+    at_once: Option<Command>,
     /// What is left of the way back, the next move last.
     way_back: Vec<Command>,
     /// A move that the rest of the way back begins at the end of is in flight or has just ended.
     on_the_way: bool,
     began: Option<Duration>,
     looks: usize,
+    /// Heading before the first look: the moves of the way back are relative to it.
+    heading: Option<f64>,
+    /// The drone has turned back to that heading.
+    is_straight: bool,
+    /// The drone is no longer where the first round was made.
+    has_moved: bool,
 }
 
 impl Recover {
     /// After losing the pose with this way back, the next move first.
-    pub(super) fn new(way_back: Vec<Command>) -> Self {
-        Self::starting(way_back, false)
+    pub(super) fn new(mut way_back: Vec<Command>) -> Self {
+        let is_turn = |command: &&Command| {
+            matches!(
+                command,
+                Command::Clockwise(_) | Command::CounterClockwise(_)
+            )
+        };
+        let turned = way_back.first().is_some_and(|first| is_turn(&first));
+        let at_once = turned.then(|| way_back.remove(0));
+        way_back.reverse();
+        Self {
+            at_once,
+            way_back,
+            on_the_way: false,
+            began: None,
+            looks: 0,
+            heading: None,
+            is_straight: false,
+            has_moved: false,
+        }
     }
 
     /// The same while a move is under way whose whole is to be undone first: it has to be done for that.
     pub(super) fn after_move(way_back: Vec<Command>) -> Self {
-        Self::starting(way_back, true)
+        Self {
+            on_the_way: true,
+            ..Self::new(way_back)
+        }
     }
 
-    fn starting(mut way_back: Vec<Command>, on_the_way: bool) -> Self {
-        way_back.reverse();
+    /// After a move was broken off of which this undoes what was surely flown.
+    pub(super) fn broken_off(at_once: Option<Command>) -> Self {
         Self {
-            way_back,
-            on_the_way,
-            began: None,
-            looks: 0,
+            at_once,
+            ..Self::new(Vec::new())
         }
     }
 
@@ -60,6 +88,28 @@ impl Recover {
         if now < began + PATIENCE {
             return Step::Wait;
         }
+        self.check_last_move(context);
+        if let Some(command) = self.at_once.take() {
+            self.on_the_way = true;
+            return Step::Send(command);
+        }
+        if self.looks == 0 {
+            self.heading = context.knowledge.heading();
+        }
+        if self.looks == ROUND
+            && let Some(command) = self.elsewhere(context)
+        {
+            return Step::Send(command);
+        }
+        if self.looks == 2 * ROUND {
+            return context.land(Outcome::TrackingLost);
+        }
+        self.looks += 1;
+        turn(LOOK).map_or(Step::Wait, Step::Send)
+    }
+
+    /// Gives up the way back when nobody knows where the drone is on it, or whether it has turned.
+    fn check_last_move(&mut self, context: &Context<'_>) {
         let is_lost = match context.last_outcome() {
             Some(CommandOutcome::Unknown) => true,
             // A leg that was stopped may be refused; how far it came has been allowed for.
@@ -67,24 +117,38 @@ impl Recover {
             Some(CommandOutcome::Done) | None => false,
         };
         if is_lost {
-            // Nobody knows where the drone is on the way back, or whether it has turned.
+            self.at_once = None;
             self.way_back.clear();
         }
         self.on_the_way = false;
+    }
+
+    /// To where the second round is made: along the way back, after turning to the heading that it was flown with, or a little lower. `None`
+    /// when the drone is there.
+    fn elsewhere(&mut self, context: &Context<'_>) -> Option<Command> {
+        if !self.is_straight {
+            self.is_straight = true;
+            match context.knowledge.heading().zip(self.heading) {
+                Some((heading, before)) if !self.way_back.is_empty() => {
+                    if let Some(command) = turn(wrap(heading - before)) {
+                        self.on_the_way = true;
+                        return Some(command);
+                    }
+                }
+                Some(_) => {}
+                None => self.way_back.clear(),
+            }
+        }
         if let Some(command) = self.way_back.pop() {
             self.on_the_way = true;
-            return Step::Send(command);
+            self.has_moved = true;
+            return Some(command);
         }
-        if self.looks == LOOKS {
-            return context.land(Outcome::TrackingLost);
+        if self.has_moved {
+            return None;
         }
-        self.looks += 1;
-        let command = if self.looks == LOOKS / 2 {
-            climb(-20)
-        } else {
-            turn(LOOK)
-        };
-        command.map_or(Step::Wait, Step::Send)
+        self.has_moved = true;
+        climb(-20)
     }
 }
 
@@ -96,7 +160,7 @@ mod tests {
     use super::super::{Input, Mission, Output};
     use super::*;
     use slam_bridge::{SlamUpdate, TrackingState};
-    use tello_sdk::{Source, Telemetry};
+    use tello_sdk::{Attitude, Source, Telemetry};
 
     /// A mission that flew forward and left after its last scan and lost the pose while deciding what to do next.
     fn lost() -> Mission {
@@ -111,12 +175,18 @@ mod tests {
         mission
     }
 
-    /// A frame without a pose, `millis` after the drone was switched on.
-    fn frame(mission: &mut Mission, millis: u64) -> Output {
+    /// A frame without a pose, `millis` after the drone was switched on, from a drone that heads so, clockwise.
+    fn frame(mission: &mut Mission, millis: u64, yaw_deg: f64) -> Output {
         let now = Duration::from_millis(millis);
+        let attitude = Attitude {
+            pitch_deg: 0.0,
+            roll_deg: 0.0,
+            yaw_deg,
+        };
+        let telemetry = Telemetry::builder(now, Source::Simulated).attitude(attitude);
         mission.handle(Input::Frame {
             now,
-            telemetry: Box::new(Telemetry::builder(now, Source::Simulated).build()),
+            telemetry: Box::new(telemetry.build()),
             slam: Some(SlamUpdate {
                 time: now,
                 state: TrackingState::Lost,
@@ -129,25 +199,64 @@ mod tests {
     }
 
     fn command(mission: &mut Mission, millis: u64) -> Option<Command> {
-        match frame(mission, millis) {
+        match frame(mission, millis, 0.0) {
+            Output::Send(command) => Some(command),
+            _ => None,
+        }
+    }
+
+    /// Looks once around, every half a second from `millis` on, and ends with this heading; what is sent next.
+    fn look_around(mission: &mut Mission, millis: u64, yaw_deg: f64) -> Option<Command> {
+        assert_eq!(frame(mission, millis, 0.0), Output::Wait, "patience");
+        for look in 1..=ROUND as u64 {
+            assert_eq!(command(mission, millis + 1000 * look), turn(LOOK), "{look}");
+            mission.handle(Input::Answer(CommandOutcome::Done));
+        }
+        match frame(mission, millis + 20_000, yaw_deg) {
             Output::Send(command) => Some(command),
             _ => None,
         }
     }
 
     #[test]
-    fn what_was_flown_since_the_scan_is_undone_before_the_look_around() {
+    fn what_was_flown_since_the_scan_is_undone_after_a_look_around() {
         let mut mission = lost();
-        assert_eq!(frame(&mut mission, 1000), Output::Wait, "patience");
-        assert_eq!(command(&mut mission, 2000), right(30));
+        assert_eq!(look_around(&mut mission, 1000, 0.0), right(30));
         mission.handle(Input::Answer(CommandOutcome::Done));
-        assert_eq!(command(&mut mission, 3000), back(60));
+        assert_eq!(command(&mut mission, 23_000), back(60));
         mission.handle(Input::Answer(CommandOutcome::Done));
-        assert_eq!(command(&mut mission, 5000), turn(LOOK));
-        assert!(
-            mission.shared.retreat.take().is_empty(),
-            "nothing is undone twice"
+        assert_eq!(command(&mut mission, 25_000), turn(LOOK));
+        let again = mission.shared.retreat.take();
+        assert!(again.is_empty(), "nothing is undone twice");
+    }
+
+    #[test]
+    fn the_way_back_is_flown_with_the_heading_that_it_was_flown_out_with() {
+        let mut mission = lost();
+        // The turns went on for ten degrees clockwise too far.
+        assert_eq!(
+            look_around(&mut mission, 1000, 10.0),
+            turn(10f64.to_radians())
         );
+        mission.handle(Input::Answer(CommandOutcome::Done));
+        assert_eq!(command(&mut mission, 23_000), right(30));
+    }
+
+    #[test]
+    fn without_a_way_back_the_second_look_is_from_below_and_then_the_drone_lands() {
+        let mut mission = lost();
+        mission.shared.retreat.forget();
+        assert_eq!(look_around(&mut mission, 1000, 0.0), climb(-20));
+        for look in 0..ROUND as u64 {
+            mission.handle(Input::Answer(CommandOutcome::Done));
+            assert_eq!(
+                command(&mut mission, 23_000 + 1000 * look),
+                turn(LOOK),
+                "{look}"
+            );
+        }
+        mission.handle(Input::Answer(CommandOutcome::Done));
+        assert_eq!(command(&mut mission, 40_000), Some(Command::Land));
     }
 
     /// What is sent first after the pose was lost during this command, which then ended so.
@@ -158,8 +267,8 @@ mod tests {
             .pilot
             .start(during.unwrap(), &mission.shared.knowledge);
         // The pose is lost; a leg is stopped, a turn runs on.
-        frame(&mut mission, 1000);
-        frame(&mut mission, 4000);
+        frame(&mut mission, 1000, 0.0);
+        frame(&mut mission, 4000, 0.0);
         assert!(matches!(mission.phase, Phase::Recover(_)));
         mission.handle(Input::Answer(outcome));
         let mut sent = (41..60).filter_map(|tenths| command(&mut mission, 100 * tenths));
@@ -182,9 +291,8 @@ mod tests {
     #[test]
     fn a_refused_way_back_ends_it() {
         let mut mission = lost();
-        assert_eq!(frame(&mut mission, 1000), Output::Wait, "patience");
-        assert_eq!(command(&mut mission, 2000), right(30));
+        assert_eq!(look_around(&mut mission, 1000, 0.0), right(30));
         mission.handle(Input::Answer(CommandOutcome::Refused("error".to_owned())));
-        assert_eq!(command(&mut mission, 3000), turn(LOOK));
+        assert_eq!(command(&mut mission, 23_000), turn(LOOK));
     }
 }
