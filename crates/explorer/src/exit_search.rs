@@ -1,6 +1,6 @@
 //! What a map tells the search for exits: kept points, those that a cleaning took out, who saw which, and where the camera looked.
 //!
-//! Missions, `explorer exits` and `explorer map` ask in this one way. Points that the cleaning took out are handed over as doubtful: far
+//! Missions, `explorer exits` and `explorer map` ask in this one way. The two commands hand over what the cleaning took out as doubtful: far
 //! points behind a door are sparse and go first. Everything is in map units. Cost: O(observations · log keyframes).
 
 use std::collections::BTreeSet;
@@ -65,6 +65,15 @@ impl ExitCloud {
         let about = map.keyframes.iter().filter(is_near);
         let about: BTreeSet<KeyFrameId> = about.map(|keyframe| keyframe.id).collect();
         Self::seen_by(map, kept, removed, |id| about.contains(&id), true)
+    }
+
+    /// The points alone.
+    #[must_use]
+    pub fn without_rays(self) -> Self {
+        Self {
+            rays: Vec::new(),
+            ..self
+        }
     }
 
     /// `seen`: without those that no such keyframe saw.

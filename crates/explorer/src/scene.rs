@@ -223,12 +223,13 @@ impl Scene {
             ..config.perception.exits
         };
         let near = self.units(config.perception.exit_view_m);
-        let (kept, removed) = (&self.kept, &self.removed);
-        let mut cloud = ExitCloud::seen_about(map, kept, removed, &pose.position, near);
+        // The rest gained no flight anything: the README has the figures.
+        let about = &pose.position;
+        let mut cloud = ExitCloud::seen_about(map, &self.kept, &[], about, near).without_rays();
         let mut report = cloud.exits(map, &seeker, &exits);
         if matches!(report, Err(ExitError::InsufficientMap { .. })) {
             // No keyframe is near enough, or the map does not tell who saw what.
-            cloud = ExitCloud::of(map, kept, removed);
+            cloud = ExitCloud::of(map, &self.kept, &[]).without_rays();
             report = cloud.exits(map, &seeker, &exits);
         }
         Ok(ExitSearch {

@@ -98,7 +98,9 @@ impl Fly {
             return if context.knowledge.untracked_for() < context.config.lost_patience {
                 Step::Wait
             } else {
-                Step::Become(Phase::Recover(Recover::new(context.retreat.take())))
+                Step::Become(Phase::Recover(Recover::turning_back(
+                    context.retreat.take(),
+                )))
             };
         };
         let Some(meters_per_unit) = context.knowledge.meters_per_unit() else {

@@ -282,11 +282,11 @@ impl Mission {
     fn recover(&mut self) -> Recover {
         let now = self.shared.knowledge.now();
         let flown = self.shared.retreat.take();
+        let before = |command| [command].into_iter().chain(flown.clone()).collect();
         match self.pilot.undo_last(now) {
             Undo::Nothing => Recover::new(flown),
-            Undo::Whole(command) => {
-                Recover::after_move([command].into_iter().chain(flown).collect())
-            }
+            Undo::Done(command) => Recover::new(before(command)),
+            Undo::Turning(command) => Recover::after_turn(before(command)),
             Undo::Part(command) => Recover::broken_off(command),
         }
     }

@@ -61,8 +61,10 @@ struct Flight {
 pub(super) enum Undo {
     /// No move is in flight or settles.
     Nothing,
-    /// This undoes the whole move.
-    Whole(Command),
+    /// The move has just been done; this undoes it.
+    Done(Command),
+    /// A turn is in flight and runs to its end; this undoes it then.
+    Turning(Command),
     /// This undoes at most what was flown of it, and rather less; `None` where nothing is known to.
     Part(Option<Command>),
 }
@@ -123,14 +125,14 @@ impl Pilot {
             } => {
                 let whole = *outcome == CommandOutcome::Done && !flight.interrupted;
                 return match undo(&flight.command) {
-                    Some(command) if whole => Undo::Whole(command),
+                    Some(command) if whole => Undo::Done(command),
                     _ => Undo::Part(None),
                 };
             }
         };
         // Turns are not stopped.
         if let Command::Clockwise(_) | Command::CounterClockwise(_) = flight.command {
-            return undo(&flight.command).map_or(Undo::Nothing, Undo::Whole);
+            return undo(&flight.command).map_or(Undo::Nothing, Undo::Turning);
         }
         let seconds = now.saturating_sub(flight.since).as_secs_f64();
         let cruised = (CRUISE_M_PER_S * (seconds - REACTION_S)).max(0.0);
@@ -264,7 +266,7 @@ mod tests {
         // A turn runs to its end.
         assert_eq!(
             undone(turn(0.5), None, 10),
-            Undo::Whole(turn(-0.5).unwrap())
+            Undo::Turning(turn(-0.5).unwrap())
         );
     }
 
@@ -272,7 +274,7 @@ mod tests {
     fn a_move_that_has_just_ended_is_undone_whole() {
         assert_eq!(
             undone(forward(100), Some(2000), 2100),
-            Undo::Whole(back(100).unwrap())
+            Undo::Done(back(100).unwrap())
         );
         assert_eq!(Pilot::new().undo_last(Duration::ZERO), Undo::Nothing);
     }

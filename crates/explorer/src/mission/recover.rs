@@ -41,17 +41,9 @@ pub(super) struct Recover {
 impl Recover {
     /// After losing the pose with this way back, the next move first.
     pub(super) fn new(mut way_back: Vec<Command>) -> Self {
-        let is_turn = |command: &&Command| {
-            matches!(
-                command,
-                Command::Clockwise(_) | Command::CounterClockwise(_)
-            )
-        };
-        let turned = way_back.first().is_some_and(|first| is_turn(&first));
-        let at_once = turned.then(|| way_back.remove(0));
         way_back.reverse();
         Self {
-            at_once,
+            at_once: None,
             way_back,
             on_the_way: false,
             began: None,
@@ -62,11 +54,20 @@ impl Recover {
         }
     }
 
-    /// The same while a move is under way whose whole is to be undone first: it has to be done for that.
-    pub(super) fn after_move(way_back: Vec<Command>) -> Self {
+    /// The same, but a turn that comes first is undone at once: the view before it was known.
+    pub(super) fn turning_back(way_back: Vec<Command>) -> Self {
+        let mut recover = Self::new(way_back);
+        recover.at_once = recover
+            .way_back
+            .pop_if(|next| matches!(next, Command::Clockwise(_) | Command::CounterClockwise(_)));
+        recover
+    }
+
+    /// The same while that turn is still under way: it has to be done for that.
+    pub(super) fn after_turn(way_back: Vec<Command>) -> Self {
         Self {
             on_the_way: true,
-            ..Self::new(way_back)
+            ..Self::turning_back(way_back)
         }
     }
 

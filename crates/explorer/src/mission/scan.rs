@@ -111,7 +111,9 @@ impl Scan {
             return climb(-centimeters).map_or(Step::Wait, Step::Send);
         }
         if !context.knowledge.is_tracking() {
-            return Step::Become(Phase::Recover(Recover::new(context.retreat.take())));
+            return Step::Become(Phase::Recover(Recover::turning_back(
+                context.retreat.take(),
+            )));
         }
         match self.purpose {
             Purpose::Site if context.needs_triangle() => Step::Become(context.triangle()),
