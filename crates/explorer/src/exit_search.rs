@@ -1,7 +1,7 @@
 //! What a map tells the search for exits: kept points, those that a cleaning took out, who saw which, and where the camera looked.
 //!
 //! Missions, `explorer exits` and `explorer map` ask in this one way. The two commands hand over what the cleaning took out as doubtful: far
-//! points behind a door are sparse and go first. Everything is in map units. Cost: O(observations · log keyframes).
+//! points behind a door are sparse and go first. Missions hand over the kept points alone. Everything is in map units. Cost: O(observations · log keyframes).
 
 use std::collections::BTreeSet;
 

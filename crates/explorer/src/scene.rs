@@ -223,7 +223,7 @@ impl Scene {
             ..config.perception.exits
         };
         let near = self.units(config.perception.exit_view_m);
-        // The rest gained no flight anything: the README has the figures.
+        // Rays and removed points gained flights nothing: docs/missions.md has the figures.
         let about = &pose.position;
         let mut cloud = ExitCloud::seen_about(map, &self.kept, &[], about, near).without_rays();
         let mut report = cloud.exits(map, &seeker, &exits);

@@ -281,12 +281,13 @@ impl Mission {
     /// it would be undone from beside where they ended.
     fn recover(&mut self) -> Recover {
         let now = self.shared.knowledge.now();
-        let flown = self.shared.retreat.take();
-        let before = |command| [command].into_iter().chain(flown.clone()).collect();
+        let flown = self.shared.retreat.take().into_iter();
         match self.pilot.undo_last(now) {
-            Undo::Nothing => Recover::new(flown),
-            Undo::Done(command) => Recover::new(before(command)),
-            Undo::Turning(command) => Recover::after_turn(before(command)),
+            Undo::Nothing => Recover::new(flown.collect()),
+            Undo::Done(command) => Recover::new([command].into_iter().chain(flown).collect()),
+            Undo::Turning(command) => {
+                Recover::after_turn([command].into_iter().chain(flown).collect())
+            }
             Undo::Part(command) => Recover::broken_off(command),
         }
     }
