@@ -6,6 +6,7 @@ use indoor_sim::{SimConfig, Simulator, World, coverage};
 use nalgebra::Point3;
 use serde::Serialize;
 use slam_bridge::SlamSource;
+use tello_sdk::Command;
 
 use crate::config::{ConfigError, MissionConfig};
 use crate::mission::{CommandOutcome, Input, Mission, Outcome, Output};
@@ -57,6 +58,8 @@ pub struct FlightSummary {
 pub struct SimulatedFlight {
     simulator: Simulator,
     mission: Mission,
+    /// What the drone was asked last and may still answer.
+    asked: Option<Command>,
     outcome: Option<Outcome>,
 }
 
@@ -74,6 +77,7 @@ impl SimulatedFlight {
         Ok(Self {
             simulator: Simulator::new(world, sim, seed)?,
             mission: Mission::new(mission, seed)?,
+            asked: None,
             outcome: None,
         })
     }
@@ -158,7 +162,10 @@ impl SimulatedFlight {
             } else {
                 CommandOutcome::Done
             };
-            self.mission.handle(Input::Answer(outcome));
+            // Of what was interrupted the simulated drone says nothing more: it answers what was sent last.
+            if let Some(to) = self.asked.clone() {
+                self.mission.handle(Input::Answer { to, outcome });
+            }
         }
         let mut updates = Vec::new();
         while let Some(update) = self.simulator.slam().poll() {
@@ -186,8 +193,13 @@ impl SimulatedFlight {
             match self.mission.poll(stages) {
                 Output::Send(command) => {
                     if let Err(refused) = self.simulator.send(&command) {
-                        self.mission
-                            .handle(Input::Answer(CommandOutcome::Refused(refused.to_string())));
+                        let outcome = CommandOutcome::Refused(refused.to_string());
+                        self.mission.handle(Input::Answer {
+                            to: command,
+                            outcome,
+                        });
+                    } else if !matches!(command, Command::Rc { .. }) {
+                        self.asked = Some(command);
                     }
                 }
                 Output::NeedMap => {

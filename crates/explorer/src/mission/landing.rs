@@ -38,3 +38,47 @@ impl Landing {
         Step::Send(Command::Land)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use core::time::Duration;
+
+    use tello_sdk::{Command, Source, Telemetry};
+
+    use super::super::drawn::Drawn;
+    use super::super::maneuver::forward;
+    use super::super::{Input, Mission, Output};
+    use super::*;
+
+    fn frame(mission: &mut Mission, millis: u64) -> Output {
+        let now = Duration::from_millis(millis);
+        mission.handle(Input::Frame {
+            now,
+            telemetry: Box::new(Telemetry::builder(now, Source::Simulated).build()),
+            slam: None,
+        });
+        mission.poll(&mut ())
+    }
+
+    #[test]
+    fn the_late_answer_of_an_overtaken_move_is_not_the_landings() {
+        let mut mission = Drawn::new(&["#####", "#.a.#", "#####"]).mission;
+        let leg = forward(60).unwrap();
+        mission.pilot.start(leg.clone(), &mission.shared.knowledge);
+        mission.handle(Input::Stop);
+        assert_eq!(frame(&mut mission, 1000), Output::Send(Command::Land));
+        let outcome = CommandOutcome::Done;
+        mission.handle(Input::Answer {
+            to: leg,
+            outcome: outcome.clone(),
+        });
+        assert_eq!(frame(&mut mission, 3000), Output::Wait);
+        let to = Command::Land;
+        mission.handle(Input::Answer { to, outcome });
+        frame(&mut mission, 4000);
+        assert_eq!(
+            frame(&mut mission, 5000),
+            Output::Finished(Outcome::Stopped)
+        );
+    }
+}

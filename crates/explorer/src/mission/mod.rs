@@ -74,8 +74,14 @@ pub enum Input {
         /// The pose and whether to trust it.
         slam: Option<SlamUpdate>,
     },
-    /// How the command in flight ended.
-    Answer(CommandOutcome),
+    /// How a command ended. Answers to a command that is no longer in flight are ignored, so that the late "ok" of a move that a
+    /// landing overtook is not taken for the landing's.
+    Answer {
+        /// The command that was sent.
+        to: Command,
+        /// How it ended.
+        outcome: CommandOutcome,
+    },
     /// The map that [`Output::NeedMap`] asked for.
     Map(Box<Map>),
     /// Land now.
@@ -156,7 +162,9 @@ impl Mission {
                     self.shared.last = Some(finished);
                 }
             }
-            Input::Answer(outcome) => self.pilot.answer(outcome, self.shared.knowledge.now()),
+            Input::Answer { to, outcome } => {
+                self.pilot.answer(&to, outcome, self.shared.knowledge.now());
+            }
             Input::Map(map) => self.shared.map = Some(*map),
             Input::Stop => self.begin_landing(Outcome::Stopped),
         }

@@ -151,9 +151,12 @@ impl Pilot {
         self.state = State::Idle;
     }
 
-    /// The drone's answer to the command in flight.
-    pub(super) fn answer(&mut self, outcome: CommandOutcome, now: Duration) {
-        if let State::InFlight(flight) = &self.state {
+    /// The drone's answer to a command: it counts if that is in flight, or if it is the stop that cut it short.
+    pub(super) fn answer(&mut self, to: &Command, outcome: CommandOutcome, now: Duration) {
+        let State::InFlight(flight) = &self.state else {
+            return;
+        };
+        if *to == flight.command || (flight.interrupted && *to == Command::Stop) {
             self.state = State::Settling {
                 flight: flight.clone(),
                 outcome,
@@ -248,9 +251,11 @@ mod tests {
     /// What undoes `command`, which was sent at once and is answered after `answered` milliseconds if at all, `millis` after that.
     fn undone(command: Option<Command>, answered: Option<u64>, millis: u64) -> Undo {
         let mut pilot = Pilot::new();
-        pilot.start(command.unwrap(), &at(0));
+        let command = command.unwrap();
+        pilot.start(command.clone(), &at(0));
         if let Some(answered) = answered {
-            pilot.answer(CommandOutcome::Done, Duration::from_millis(answered));
+            let at = Duration::from_millis(answered);
+            pilot.answer(&command, CommandOutcome::Done, at);
         }
         pilot.undo_last(Duration::from_millis(millis))
     }
@@ -268,6 +273,26 @@ mod tests {
             undone(turn(0.5), None, 10),
             Undo::Turning(turn(-0.5).unwrap())
         );
+    }
+
+    #[test]
+    fn only_an_answer_to_the_command_in_flight_ends_it() {
+        let leg = forward(100).unwrap();
+        let is_ended_by = |to: &Command, interrupted: bool| {
+            let mut pilot = Pilot::new();
+            pilot.start(leg.clone(), &at(0));
+            if interrupted {
+                pilot.interrupt();
+            }
+            pilot.answer(to, CommandOutcome::Done, Duration::from_millis(500));
+            matches!(pilot.state, State::Settling { .. })
+        };
+        for interrupted in [false, true] {
+            assert!(is_ended_by(&leg, interrupted));
+            assert!(!is_ended_by(&back(100).unwrap(), interrupted));
+        }
+        assert!(!is_ended_by(&Command::Stop, false));
+        assert!(is_ended_by(&Command::Stop, true));
     }
 
     #[test]

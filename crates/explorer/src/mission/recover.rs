@@ -206,12 +206,18 @@ mod tests {
         }
     }
 
+    /// The drone's answer to `to`.
+    fn answer(mission: &mut Mission, to: Option<Command>, outcome: CommandOutcome) {
+        let to = to.unwrap();
+        mission.handle(Input::Answer { to, outcome });
+    }
+
     /// Looks once around, every half a second from `millis` on, and ends with this heading; what is sent next.
     fn look_around(mission: &mut Mission, millis: u64, yaw_deg: f64) -> Option<Command> {
         assert_eq!(frame(mission, millis, 0.0), Output::Wait, "patience");
         for look in 1..=ROUND as u64 {
             assert_eq!(command(mission, millis + 1000 * look), turn(LOOK), "{look}");
-            mission.handle(Input::Answer(CommandOutcome::Done));
+            answer(mission, turn(LOOK), CommandOutcome::Done);
         }
         match frame(mission, millis + 20_000, yaw_deg) {
             Output::Send(command) => Some(command),
@@ -223,9 +229,9 @@ mod tests {
     fn what_was_flown_since_the_scan_is_undone_after_a_look_around() {
         let mut mission = lost();
         assert_eq!(look_around(&mut mission, 1000, 0.0), right(30));
-        mission.handle(Input::Answer(CommandOutcome::Done));
+        answer(&mut mission, right(30), CommandOutcome::Done);
         assert_eq!(command(&mut mission, 23_000), back(60));
-        mission.handle(Input::Answer(CommandOutcome::Done));
+        answer(&mut mission, back(60), CommandOutcome::Done);
         assert_eq!(command(&mut mission, 25_000), turn(LOOK));
         let again = mission.shared.retreat.take();
         assert!(again.is_empty(), "nothing is undone twice");
@@ -239,7 +245,7 @@ mod tests {
             look_around(&mut mission, 1000, 10.0),
             turn(10f64.to_radians())
         );
-        mission.handle(Input::Answer(CommandOutcome::Done));
+        answer(&mut mission, turn(10f64.to_radians()), CommandOutcome::Done);
         assert_eq!(command(&mut mission, 23_000), right(30));
     }
 
@@ -248,15 +254,17 @@ mod tests {
         let mut mission = lost();
         mission.shared.retreat.forget();
         assert_eq!(look_around(&mut mission, 1000, 0.0), climb(-20));
+        let mut asked = climb(-20);
         for look in 0..ROUND as u64 {
-            mission.handle(Input::Answer(CommandOutcome::Done));
+            answer(&mut mission, asked, CommandOutcome::Done);
+            asked = turn(LOOK);
             assert_eq!(
                 command(&mut mission, 23_000 + 1000 * look),
                 turn(LOOK),
                 "{look}"
             );
         }
-        mission.handle(Input::Answer(CommandOutcome::Done));
+        answer(&mut mission, asked, CommandOutcome::Done);
         assert_eq!(command(&mut mission, 40_000), Some(Command::Land));
     }
 
@@ -264,14 +272,13 @@ mod tests {
     fn lost_during(during: Option<Command>, outcome: CommandOutcome) -> Option<Command> {
         let mut mission = lost();
         mission.phase = Phase::Triangle(Maneuver::default());
-        mission
-            .pilot
-            .start(during.unwrap(), &mission.shared.knowledge);
+        let sent = during.clone().unwrap();
+        mission.pilot.start(sent, &mission.shared.knowledge);
         // The pose is lost; a leg is stopped, a turn runs on.
         frame(&mut mission, 1000, 0.0);
         frame(&mut mission, 4000, 0.0);
         assert!(matches!(mission.phase, Phase::Recover(_)));
-        mission.handle(Input::Answer(outcome));
+        answer(&mut mission, during, outcome);
         let mut sent = (41..60).filter_map(|tenths| command(&mut mission, 100 * tenths));
         sent.next()
     }
@@ -293,7 +300,8 @@ mod tests {
     fn a_refused_way_back_ends_it() {
         let mut mission = lost();
         assert_eq!(look_around(&mut mission, 1000, 0.0), right(30));
-        mission.handle(Input::Answer(CommandOutcome::Refused("error".to_owned())));
+        let refused = CommandOutcome::Refused("error".to_owned());
+        answer(&mut mission, right(30), refused);
         assert_eq!(command(&mut mission, 23_000), turn(LOOK));
     }
 }
