@@ -1,8 +1,11 @@
 //! Text lines with their numbers, of any bytes: what is not UTF-8 becomes replacement characters.
 
-use std::io::{self, BufRead};
+use std::io::{self, BufRead, ErrorKind, Read};
 
 use crate::Place;
+
+/// Bytes of the longest line that is taken for text; no row of a map comes near, but a stream without line breaks would fill the memory.
+const LONGEST: u64 = 16 << 20;
 
 /// Reads line after line, counting lines and bytes.
 #[derive(Debug)]
@@ -26,14 +29,19 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// The next line and its number from 1, without its line break; `None` at the end. A byte
-    /// order mark is dropped.
+    /// order mark is dropped. Fails at a line of more than 16 MiB.
     pub(crate) fn next(&mut self) -> io::Result<Option<(u64, &str)>> {
         self.bytes.clear();
-        let read = self.reader.read_until(b'\n', &mut self.bytes)?;
+        let mut within = (&mut self.reader).take(LONGEST + 1);
+        let read = within.read_until(b'\n', &mut self.bytes)?;
         if read == 0 {
             return Ok(None);
         }
         self.number += 1;
+        if read as u64 > LONGEST {
+            let message = format!("line {} is longer than {LONGEST} bytes", self.number);
+            return Err(io::Error::new(ErrorKind::InvalidData, message));
+        }
         self.offset += read as u64;
         self.text.clear();
         self.text.push_str(&String::from_utf8_lossy(&self.bytes));
@@ -71,5 +79,21 @@ impl<R: BufRead> Lines<R> {
     /// The bytes behind the last line handed out, and their offset in the file.
     pub(crate) fn into_rest(self) -> (R, u64) {
         (self.reader, self.offset)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stream_without_line_breaks_is_refused_before_it_fills_the_memory() {
+        let endless = io::BufReader::new(b"first\n".chain(io::repeat(b'7')));
+        let mut lines = Lines::new(endless);
+        assert_eq!(lines.next().unwrap(), Some((1, "first")));
+        let error = lines.next().unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::InvalidData);
+        assert!(error.to_string().starts_with("line 2 is longer"), "{error}");
+        assert!(lines.bytes.len() as u64 <= LONGEST + 1);
     }
 }
