@@ -84,9 +84,9 @@ fn readings() -> Vec<(&'static str, OutlierConfig, bool)> {
             true,
         ),
         (
-            "- fixed tolerances, 8 and 5.5",
+            "- fixed tolerances, 10 and 5.5",
             changed(|cues| {
-                if cues.tolerance != Tolerance::Fixed(8.0) {
+                if cues.tolerance != Tolerance::Fixed(10.0) {
                     cues.tolerance = Tolerance::Fixed(5.5);
                 }
             }),

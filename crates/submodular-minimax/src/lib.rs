@@ -17,8 +17,8 @@ mod views;
 pub use joint_function::{Joined, JointFunction, Split};
 pub use minimax::{Beta, Certificate, MinimaxConfig, StopReason};
 pub use outlier::{
-    Cues, DepthSource, OutlierConfig, OutlierError, OutlierRemoval, RayConfig, Reading, Solver,
-    Tolerance, remove_outliers,
+    AmongCameras, Cues, DepthSource, ImageNeighbours, OutlierConfig, OutlierError, OutlierRemoval,
+    RayConfig, Reading, Solver, Tolerance, remove_outliers,
 };
 pub use points::PointLike;
 pub use set_function::{Growth, SetFunction};

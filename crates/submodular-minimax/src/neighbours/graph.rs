@@ -48,6 +48,19 @@ impl NeighbourGraph {
         }
     }
 
+    /// Makes a point a neighbour of `v`, at this squared distance if it is nearer than before. If the row is full its farthest goes.
+    pub(crate) fn link(&mut self, v: usize, neighbour: Neighbour) {
+        let row = &mut self.entries[v * self.width..(v + 1) * self.width];
+        let count = self.count[v] as usize;
+        let known = row[..count].iter().position(|n| n.1 == neighbour.1);
+        let at = known.unwrap_or(count.min(self.width - 1));
+        if known.is_none_or(|at| neighbour.0 < row[at].0) {
+            row[at] = neighbour;
+        }
+        self.count[v] = count.max(at + 1) as u32;
+        row[..=at].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    }
+
     /// How many points there are.
     pub(crate) fn len(&self) -> usize {
         self.count.len()

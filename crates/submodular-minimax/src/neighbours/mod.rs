@@ -4,4 +4,4 @@ mod graph;
 mod tree;
 
 pub(crate) use graph::NeighbourGraph;
-pub(crate) use tree::RangeTree;
+pub(crate) use tree::{Neighbour, RangeTree};

@@ -1,6 +1,6 @@
 //! Settings of the outlier removal and its named readings.
 
-use super::cues::{Cues, DepthSource, Tolerance};
+use super::cues::{Cues, DepthSource, ImageNeighbours, Tolerance};
 use super::error::OutlierError;
 use crate::minimax::Beta;
 
@@ -251,6 +251,14 @@ impl Cues {
     pub fn validate(&self) -> Result<(), OutlierError> {
         for (field, value) in self.exponents() {
             not_negative(field, value)?;
+        }
+        let ImageNeighbours { count, rank, .. } = self.depth_neighbours;
+        if count < 12 || rank < 1 || rank > count {
+            return Err(OutlierError::Setting {
+                field: "depth_neighbours",
+                value: if count < 12 { count } else { rank } as f64,
+                range: "at least 12 neighbours, and a rank from 1 to their number",
+            });
         }
         match self.tolerance {
             Tolerance::Fixed(times)

@@ -28,6 +28,8 @@ pub struct Cues {
     pub range_exponent: f64,
     /// Exponent of (depth disagreement with the wider image neighbours + 0.02), at least 0.
     pub depth_exponent: f64,
+    /// Which those are.
+    pub depth_neighbours: ImageNeighbours,
     /// Exponent of (depth disagreement with the nearest image neighbours + 0.02), at least 0.
     pub near_depth_exponent: f64,
     /// Exponent of (1 + violations), at least 0.
@@ -44,6 +46,38 @@ pub struct Cues {
     pub hidden_exponent: f64,
     /// How many times the median badness is kept.
     pub tolerance: Tolerance,
+}
+
+/// The wider image neighbours that a point's depth is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ImageNeighbours {
+    /// How many there are, at least 12.
+    pub count: usize,
+    /// Of their disagreements in ascending order the one that counts, from 1 to `count`.
+    pub rank: usize,
+    /// What counts of the disagreements in up to three cameras.
+    pub cameras: AmongCameras,
+}
+
+/// What counts of what several cameras say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AmongCameras {
+    /// The median: a point must disagree in most pictures.
+    Median,
+    /// The largest: a wrong point may happen to lie before what it resembles, but not in all pictures.
+    Largest,
+}
+
+impl ImageNeighbours {
+    /// The tenth of 20, the median of the cameras'.
+    #[must_use]
+    pub fn half_of_twenty() -> Self {
+        Self {
+            count: 20,
+            rank: 10,
+            cameras: AmongCameras::Median,
+        }
+    }
 }
 
 /// How many times the median badness a point may have.
@@ -80,6 +114,7 @@ impl Cues {
         Self {
             range_exponent: 0.8,
             depth_exponent: 0.25,
+            depth_neighbours: ImageNeighbours::half_of_twenty(),
             near_depth_exponent: 0.15,
             violation_exponent: 0.1,
             far_exponent: 0.0,
@@ -90,19 +125,24 @@ impl Cues {
         }
     }
 
-    /// For triangulated points: 1, 1, 0, 0.2, 0, 0, 0, 0, 8 times.
+    /// For triangulated points: 1, 1 (the 28th of 40 neighbours, the largest of the cameras'), 0.5, 0.6, 0, 0, 0, 0, 10 times.
     #[must_use]
     pub fn triangulated() -> Self {
         Self {
             range_exponent: 1.0,
             depth_exponent: 1.0,
-            near_depth_exponent: 0.0,
-            violation_exponent: 0.2,
+            depth_neighbours: ImageNeighbours {
+                count: 40,
+                rank: 28,
+                cameras: AmongCameras::Largest,
+            },
+            near_depth_exponent: 0.5,
+            violation_exponent: 0.6,
             far_exponent: 0.0,
             parallax_exponent: 0.0,
             coarseness_exponent: 0.0,
             hidden_exponent: 0.0,
-            tolerance: Tolerance::Fixed(8.0),
+            tolerance: Tolerance::Fixed(10.0),
         }
     }
 
@@ -112,6 +152,7 @@ impl Cues {
         Self {
             range_exponent: 0.8,
             depth_exponent: 0.0,
+            depth_neighbours: ImageNeighbours::half_of_twenty(),
             near_depth_exponent: 0.2,
             violation_exponent: 0.2,
             far_exponent: 0.1,
@@ -158,3 +199,24 @@ pub(super) fn told(sight: &Sight<'_>) -> Option<DepthSource> {
 
 /// One point in this many, seen once, shows that depths were measured.
 const LEAST_MEASURED: usize = 50;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranks_lie_within_the_image_neighbours() {
+        let good = |(count, rank): (usize, usize)| {
+            (12..=40).contains(&count) && (1..=count).contains(&rank)
+        };
+        for (count, rank) in [(40, 40), (12, 1), (40, 41), (40, 0), (11, 3)] {
+            let mut cues = Cues::triangulated();
+            (cues.depth_neighbours.count, cues.depth_neighbours.rank) = (count, rank);
+            assert_eq!(
+                cues.validate().is_ok(),
+                good((count, rank)),
+                "{rank} of {count}"
+            );
+        }
+    }
+}

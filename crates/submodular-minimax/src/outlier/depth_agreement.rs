@@ -1,20 +1,19 @@
 //! Does a point lie at the depth of what is seen next to it?
 //!
 //! A wrong triangulation moves a point along its viewing ray, where it leaves the surface that its
-//! image neighbours lie on. For a point v and a camera c: the 20 points that c sees nearest to v in
-//! direction and |ln(|cv| / |cu|)| for each. Of all of these the tenth smallest counts, so that one
+//! image neighbours lie on. For a point v and a camera c: the points that c sees nearest to v in
+//! direction and |ln(|cv| / |cu|)| for each. Of all of these one of the middle counts, so that one
 //! side of a depth edge may disagree; of the nearest twelve the third smallest, so that v need only
-//! be one of a few. Of the first, the middle and the last observer, the median of the former counts, and
-//! the least of the latter.
+//! be one of a few. Of the first, the middle and the last observer, the median or the largest of the former counts,
+//! and the least of the latter.
 //! Cost: three searches a point, O(log) each.
 
+use super::cues::{AmongCameras, ImageNeighbours};
 use super::sight::Sight;
 use crate::neighbours::RangeTree;
 use crate::points::{Cloud, median};
 
-/// Image neighbours compared with, and the rank of the disagreement that counts.
-const WIDE: (usize, usize) = (20, 10);
-/// The same among the nearest of them.
+/// Of so many nearest image neighbours, the rank of the disagreement that counts.
 const NEAR: (usize, usize) = (12, 3);
 /// A camera that sees fewer points tells nothing.
 const FEWEST: usize = 50;
@@ -30,14 +29,15 @@ pub(super) struct DepthDisagreement {
 }
 
 impl DepthDisagreement {
-    /// Without `widely` only the nearest image neighbours are asked, and `wide` tells nothing.
-    pub(super) fn new(cloud: &Cloud, sight: &Sight<'_>, widely: bool) -> Self {
+    /// Without `wide` only the nearest image neighbours are asked, and the wide disagreement tells nothing.
+    pub(super) fn new(cloud: &Cloud, sight: &Sight<'_>, wide: Option<ImageNeighbours>) -> Self {
         let mut seen = vec![Seen::default(); cloud.len()];
         for camera in 0..sight.cameras.len() {
-            compare_in_camera(cloud, sight, camera, widely, &mut seen);
+            compare_in_camera(cloud, sight, camera, wide, &mut seen);
         }
+        let among = wide.map_or(AmongCameras::Median, |wide| wide.cameras);
         let mut near: Vec<f64> = seen.iter().map(|seen| seen.near).collect();
-        let mut wide: Vec<f64> = seen.into_iter().map(Seen::median_wide).collect();
+        let mut wide: Vec<f64> = seen.into_iter().map(|seen| seen.wide(among)).collect();
         fill_unknown(&mut wide);
         let dirt = fill_unknown(&mut near).map(|mut known| {
             let at = known.len() * 9 / 10;
@@ -74,10 +74,12 @@ impl Seen {
     }
 
     /// Infinite where no camera can tell.
-    fn median_wide(mut self) -> f64 {
-        match self.cameras {
-            0 => f64::INFINITY,
-            known => median(&mut self.wide[..known]),
+    fn wide(mut self, among: AmongCameras) -> f64 {
+        let known = &mut self.wide[..self.cameras];
+        match (known.is_empty(), among) {
+            (true, _) => f64::INFINITY,
+            (false, AmongCameras::Median) => median(known),
+            (false, AmongCameras::Largest) => known.iter().copied().fold(0.0, f64::max),
         }
     }
 }
@@ -96,7 +98,7 @@ fn compare_in_camera(
     cloud: &Cloud,
     sight: &Sight<'_>,
     camera: usize,
-    widely: bool,
+    wide: Option<ImageNeighbours>,
     compared: &mut [Seen],
 ) {
     let seen = &sight.seen[camera];
@@ -107,7 +109,7 @@ fn compare_in_camera(
         .map(|&v| sight.bearing(cloud, camera, v as usize))
         .map(|(direction, depth)| (direction, depth.ln()))
         .unzip();
-    let neighbours = if widely { WIDE.0 } else { NEAR.0 };
+    let neighbours = wide.map_or(NEAR.0, |wide| wide.count);
     let tree = RangeTree::new(&directions, &[]);
     let (mut found, mut disagreements) = (Vec::new(), Vec::new());
     for (position, &at) in tree.order().iter().enumerate() {
@@ -120,8 +122,9 @@ fn compare_in_camera(
         disagreements.clear();
         disagreements.extend((found.iter()).map(|n| disagreement(own, log_depth[n.1 as usize])));
         compared[v].near = (compared[v].near).min(smallest(&mut disagreements[..NEAR.0], NEAR.1));
-        if widely {
-            compared[v].add(smallest(&mut disagreements, WIDE.1));
+        if let Some(wide) = wide {
+            let rank = wide.rank.min(disagreements.len());
+            compared[v].add(smallest(&mut disagreements, rank));
         }
     }
 }

@@ -2,13 +2,16 @@
 //!
 //! K(u, v) = (1 − d/h)₊ with h = reach · spacing; support(u) = Σ K(u, ·); w(u) = min(1, support / need),
 //! zero where u's component has too few points; θ(v) = (1 + β) λ, plus the cost of violating rays.
+//! In the adaptive reading a point that would go but lies on a plane of points that stay is as far from the plane's best supported
+//! point as from the plane itself.
 
 use super::config::{OutlierConfig, Reading};
 use super::passing_rays::passing_rays;
+use super::planes::Planes;
 use super::problem::{Problem, Score};
 use super::sight::Sight;
 use crate::disjoint_sets::DisjointSets;
-use crate::neighbours::{NeighbourGraph, RangeTree};
+use crate::neighbours::{Neighbour, NeighbourGraph, RangeTree};
 use crate::points::{Cloud, median};
 
 /// The threshold of the strict pass.
@@ -51,12 +54,43 @@ pub(super) fn problem(
             *threshold += config.rays.violation_cost * f64::from(count);
         }
     }
-    Some(Problem {
+    let mut problem = Problem {
         graph,
         score,
         threshold,
         beta,
-    })
+    };
+    if config.adaptive {
+        let links = links_along_planes(cloud, &problem);
+        for (v, neighbour) in links {
+            problem.graph.link(v, neighbour);
+        }
+    }
+    Some(problem)
+}
+
+/// Which points that would go lie on a plane of those that stay: each with the plane's best supported point, and the square of
+/// its distance from the plane.
+fn links_along_planes(cloud: &Cloud, problem: &Problem) -> Vec<(usize, Neighbour)> {
+    let Score::Kernel { weight, .. } = &problem.score else {
+        return Vec::new();
+    };
+    let stays = |v: usize| problem.best(v) > problem.threshold[v];
+    let (kept, suspects): (Vec<usize>, Vec<usize>) = (0..cloud.len()).partition(|&v| stays(v));
+    if suspects.is_empty() {
+        return Vec::new();
+    }
+    let places: Vec<[f64; 3]> = kept.iter().map(|&v| cloud.points[v]).collect();
+    let planes = Planes::new(&places);
+    let heavier = |a: &usize, b: &usize| weight[*a].total_cmp(&weight[*b]);
+    let supported = |members: &[usize]| members.iter().map(|&at| kept[at]).max_by(heavier);
+    let supported: Vec<Option<usize>> = planes.members().map(supported).collect();
+    let link = |&v: &usize| {
+        let (distance, plane) = planes.nearest(cloud.points[v])?;
+        let (u, squared) = (supported[plane]?, distance * distance);
+        (problem.score.of(u, squared) > problem.best(v)).then_some((v, (squared, u as u32)))
+    };
+    suspects.iter().filter_map(link).collect()
 }
 
 /// The numbers of one pass, in scaled units.

@@ -12,7 +12,9 @@ mod depth_agreement;
 mod error;
 mod kernel_reading;
 mod origin;
+mod outline;
 mod passing_rays;
+mod planes;
 mod problem;
 mod ranged_reading;
 mod removal;
@@ -20,7 +22,7 @@ mod sight;
 mod solve;
 
 pub use config::{OutlierConfig, RayConfig, Reading, Solver};
-pub use cues::{Cues, DepthSource, Tolerance};
+pub use cues::{AmongCameras, Cues, DepthSource, ImageNeighbours, Tolerance};
 pub use error::OutlierError;
 pub use removal::OutlierRemoval;
 

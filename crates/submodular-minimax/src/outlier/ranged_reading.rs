@@ -8,7 +8,7 @@
 //! θ(v)       = 1 / (1 + T σ / (cue(v) unit)), σ = median over v of cue(v) min over u of D(u) + d(u, v)
 //!
 //!              e    wide   near   1 + violations   r / median r   parallax   coarseness   1 + hiding   T
-//! triangulated 1    1      0      0.2              0              0          0            0            8
+//! triangulated 1    1      0.5    0.6              0              0          0            0            10
 //! measured     0.8  0      0.2    0.2              0.1            0.3        0.5          0.1          exp(2 s^0.7)
 //! one position 0.8  0.25   0.15   0.1              0              0          0            0            exp(0.08 / q)
 //! ```
@@ -53,7 +53,8 @@ pub(super) fn problem(cloud: &Cloud, sight: &Sight<'_>, config: &OutlierConfig) 
         through.fold(f64::INFINITY, f64::min)
     };
     let badness: Vec<f64> = (0..cloud.len()).map(nearest).collect();
-    let depth = DepthDisagreement::new(cloud, sight, weights.depth_exponent > 0.0);
+    let wide = (weights.depth_exponent > 0.0).then_some(weights.depth_neighbours);
+    let depth = DepthDisagreement::new(cloud, sight, wide);
     let mut cues = depth_cues(&depth, weights);
     sight_cues(cloud, sight, &ranges, (weights, &config.rays), &mut cues);
     let unit = median(&mut badness.clone());
