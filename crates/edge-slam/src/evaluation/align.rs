@@ -99,10 +99,16 @@ pub fn align_points<P: Copy + Into<[f64; 3]>>(
     let (source, target) = (columns(source)?, columns(target)?);
     let (source_mean, target_mean) = (mean(&source), mean(&target));
     let mut covariance = Matrix3::zeros();
-    let mut variance = 0.0;
+    let (mut variance, mut target_variance) = (0.0, 0.0);
     for (x, y) in source.iter().zip(&target) {
         covariance += (y - target_mean) * (x - source_mean).transpose();
         variance += (x - source_mean).norm_squared();
+        target_variance += (y - target_mean).norm_squared();
+    }
+    for (points, variance) in [(&source, variance), (&target, target_variance)] {
+        if is_rounding(points, variance) {
+            return Err(EvaluationError::Degenerate { ratio: 0.0 });
+        }
     }
     let rotation = rotation_between(&covariance)?;
     let scale = match alignment {
@@ -121,6 +127,13 @@ pub fn align_points<P: Copy + Into<[f64; 3]>>(
         motion: Isometry3::from_parts(translation.into(), rotation),
         scale,
     })
+}
+
+/// Whether a sum of squared distances from the mean is no more than what rounding leaves of points in one place: their mean is not
+/// exactly that place.
+pub(super) fn is_rounding(points: &[Vector3<f64>], variance: f64) -> bool {
+    let size: f64 = points.iter().map(Vector3::norm_squared).sum();
+    !(variance > 1e-26 * size)
 }
 
 /// How many pairs there are to align, at least `needed`; 0 when there is nothing to align.
@@ -178,7 +191,8 @@ pub(crate) fn rotation_between(
     covariance: &Matrix3<f64>,
 ) -> Result<UnitQuaternion<f64>, EvaluationError> {
     let size = covariance.norm();
-    if !(size > f64::MIN_POSITIVE) {
+    // Eigenvalues of what is not finite are sought without end.
+    if !(size > f64::MIN_POSITIVE && size.is_finite()) {
         return Err(EvaluationError::Degenerate { ratio: 0.0 });
     }
     let c = covariance / size;
@@ -299,6 +313,23 @@ mod tests {
             Err(EvaluationError::Degenerate { .. })
         ));
         assert!(align_points(&lump[..2], &lump[..2], Alignment::Se3).is_err());
+        // The mean of these is not exactly 0.1: what rounding leaves is no shape.
+        let still = [[0.1, 0.7, -0.3]; 80];
+        let bent: Vec<[f64; 3]> = (0..80)
+            .map(|i| [f64::from(i), f64::from(i * i % 7), f64::from(i % 5)])
+            .collect();
+        for alignment in [Alignment::Se3, Alignment::Sim3] {
+            for (source, target) in [(&bent[..], &still[..]), (&still, &bent)] {
+                let found = align_points(source, target, alignment);
+                let is_refused = matches!(found, Err(EvaluationError::Degenerate { .. }));
+                assert!(is_refused, "{found:?}");
+            }
+        }
+        // Millimetres far from the origin are a shape.
+        let far = |p: &[f64; 3]| [1e6 + 1e-3 * p[0], 5e6 + 1e-3 * p[1], 1e-3 * p[2]];
+        let far: Vec<[f64; 3]> = bent.iter().map(far).collect();
+        let found = align_points(&bent, &far, Alignment::Sim3).unwrap();
+        assert!((found.scale / 1e-3 - 1.0).abs() < 1e-6, "{}", found.scale);
         assert!(align_points(&lump[..2], &lump[..3], Alignment::Se3).is_err());
         let bad = [[f64::INFINITY, 0.0, 0.0]; 4];
         assert!(align_points(&bad, &bad, Alignment::Se3).is_err());

@@ -12,7 +12,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-use super::align::{count_pairs, mean, rotation_between, usable};
+use super::align::{count_pairs, is_rounding, mean, rotation_between, usable};
 use super::{Alignment, EvaluationError, Similarity};
 
 /// The [`Similarity`] that takes `source` onto `target`: rotation from orientations, then scale and translation from positions.
@@ -75,12 +75,13 @@ pub fn align_poses(
 /// The factor by which `from` fits `to` best, once both are moved to their means.
 fn stretch(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Result<f64, EvaluationError> {
     let (centre, goal) = (mean(from), mean(to));
-    let (mut along, mut variance) = (0.0, 0.0);
+    let (mut along, mut variance, mut goal_variance) = (0.0, 0.0, 0.0);
     for (x, y) in from.iter().zip(to) {
         along += (x - centre).dot(&(y - goal));
         variance += (x - centre).norm_squared();
+        goal_variance += (y - goal).norm_squared();
     }
-    if !(variance > f64::MIN_POSITIVE) {
+    if is_rounding(from, variance) || is_rounding(to, goal_variance) {
         return Err(EvaluationError::Degenerate { ratio: 0.0 });
     }
     let scale = along / variance;
@@ -185,6 +186,19 @@ mod tests {
             run(&still, &still, Alignment::Sim3),
             Err(EvaluationError::Degenerate { ratio: 0.0 })
         );
+        let rounded = [Isometry3::translation(0.1, 0.7, -0.3); 80];
+        assert_eq!(
+            run(&rounded, &rounded, Alignment::Sim3),
+            Err(EvaluationError::Degenerate { ratio: 0.0 })
+        );
+        let mut path = rounded;
+        for (k, pose) in (0_u8..).zip(&mut path) {
+            pose.translation.vector.x += f64::from(k);
+        }
+        assert!(run(&path, &rounded, Alignment::Se3).is_ok());
+        for (source, target) in [(&path, &rounded), (&rounded, &path)] {
+            assert!(run(source, target, Alignment::Sim3).is_err());
+        }
         assert!(run(&[], &[], Alignment::Se3).is_err());
         assert!(run(&[], &[], Alignment::None).is_ok());
         assert!(run(&still[..2], &still[..3], Alignment::Se3).is_err());
@@ -194,6 +208,11 @@ mod tests {
             run(&bad, &still, Alignment::Se3),
             Err(EvaluationError::NonFinite { index: 2 })
         );
+        // Finite numbers that are no rotation.
+        let huge = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1e200, 1e200, 0.0, 1.0));
+        let mut wild = still;
+        wild[1].rotation = huge;
+        assert!(run(&wild, &still, Alignment::Se3).is_err());
         // Forwards by one, backwards by the other.
         let line = |sign: f64| [0.0, 1.0, 2.0].map(|x| Isometry3::translation(sign * x, 0.0, 0.0));
         assert!(matches!(

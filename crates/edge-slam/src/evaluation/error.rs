@@ -5,7 +5,9 @@
 #[non_exhaustive]
 pub enum EvaluationError {
     /// A time stamp or coordinate is NaN, infinite, or too large to be squared.
-    #[error("entry {index} holds a number that is not finite; remove it before evaluating")]
+    #[error(
+        "entry {index} holds a number that is not finite or too large; remove it before evaluating"
+    )]
     NonFinite {
         /// Index into the slice that was handed in.
         index: usize,

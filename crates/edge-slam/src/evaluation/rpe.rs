@@ -53,6 +53,22 @@ pub struct RelativePoseError {
 
 /// Associates two trajectories and compares their motions over an interval.
 ///
+/// Cost: O((n + m) log m); for [`RpeInterval::Seconds`] and pairs that are not in the order of time O(n²).
+///
+/// ```
+/// use edge_slam::evaluation::{RpeConfig, RpeInterval, TimedPose, relative_pose_error};
+/// use edge_slam::nalgebra::Isometry3;
+/// // The estimate runs a tenth too fast.
+/// let path = |speed: f64| -> Vec<TimedPose> {
+///     let pose = |k| TimedPose { time: f64::from(k), pose: Isometry3::translation(speed * f64::from(k), 0.0, 0.0) };
+///     (0..9).map(pose).collect()
+/// };
+/// let config = RpeConfig { interval: RpeInterval::Seconds(2.0), all_pairs: true, ..Default::default() };
+/// let drift = relative_pose_error(&path(1.1), &path(1.0), &config)?;
+/// assert!((drift.translation.rmse - 0.2).abs() < 1e-9 && drift.pairs == 7);
+/// # Ok::<(), edge_slam::evaluation::EvaluationError>(())
+/// ```
+///
 /// # Errors
 /// [`EvaluationError`]: no pair, values that are not finite, or an interval that is not positive.
 pub fn relative_pose_error(
@@ -126,10 +142,16 @@ fn frame_steps(samples: usize, interval: usize, all_pairs: bool) -> Vec<(usize, 
 fn second_steps(times: &[f64], seconds: f64, config: &RpeConfig) -> Vec<(usize, usize)> {
     let mut steps = Vec::new();
     let mut from = 0;
+    let is_ordered = times.is_sorted();
     while from < times.len() {
         let wanted = times[from] + seconds;
         let gap = |to: &usize| (times[*to] - wanted).abs();
-        let nearest = (from + 1..times.len()).min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let candidates = if is_ordered {
+            around(times, from + 1, wanted)
+        } else {
+            from + 1..times.len()
+        };
+        let nearest = candidates.min_by(|a, b| gap(a).total_cmp(&gap(b)));
         let hit = nearest.filter(|to| gap(to) <= config.max_difference.max(0.5 * MEAN_FRAME));
         if let Some(to) = hit {
             steps.push((from, to));
@@ -142,6 +164,16 @@ fn second_steps(times: &[f64], seconds: f64, config: &RpeConfig) -> Vec<(usize, 
     steps
 }
 
+/// From the first of the latest stamps before `wanted` to the first one at or after it: the nearest is among them. `times` ascend;
+/// those before `start` are left out.
+fn around(times: &[f64], start: usize, wanted: f64) -> core::ops::Range<usize> {
+    let after = times.partition_point(|&time| time < wanted);
+    let before = after
+        .checked_sub(1)
+        .map_or(0, |last| times.partition_point(|&time| time < times[last]));
+    before.max(start)..(after + 1).max(start + 1).min(times.len())
+}
+
 /// A 30 Hz camera's frame time, seconds: no sample lies nearer than half of it to a wanted time in general.
 const MEAN_FRAME: f64 = 1.0 / 30.0;
 
@@ -149,6 +181,7 @@ const MEAN_FRAME: f64 = 1.0 / 30.0;
 mod tests {
     use super::*;
     use nalgebra::{Isometry3, Vector3};
+    use proptest::prelude::*;
 
     fn straight(n: u32, speed: f64) -> Vec<TimedPose> {
         (0..n)
@@ -200,6 +233,35 @@ mod tests {
                 .max
                 < 1e-9
         );
+    }
+
+    proptest! {
+        #[test]
+        fn pairs_over_seconds_are_those_of_looking_at_all(
+            steps in prop::collection::vec(0_u8..4, 1..60), tenths in 1_u8..20, all_pairs in any::<bool>(),
+        ) {
+            // Stamps that repeat and leave gaps; then the same ones in another order.
+            let mut time = 0.0;
+            let mut times: Vec<f64> = steps.iter().map(|&step| { time += 0.1 * f64::from(step); time }).collect();
+            let config = RpeConfig { all_pairs, max_difference: 0.11, ..Default::default() };
+            let seconds = 0.1 * f64::from(tenths);
+            for _ in 0..2 {
+                let mut expected = Vec::new();
+                let mut from = 0;
+                while from < times.len() {
+                    let gap = |to: usize| (times[to] - (times[from] + seconds)).abs();
+                    let mut best = None;
+                    for to in from + 1..times.len() {
+                        best = best.filter(|&k| gap(k) <= gap(to)).or(Some(to));
+                    }
+                    let hit = best.filter(|&to| gap(to) <= 0.11);
+                    expected.extend(hit.map(|to| (from, to)));
+                    from = hit.filter(|_| !all_pairs).unwrap_or(from + 1);
+                }
+                prop_assert_eq!(second_steps(&times, seconds, &config), expected);
+                times.reverse();
+            }
+        }
     }
 
     #[test]
