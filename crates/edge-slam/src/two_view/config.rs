@@ -78,8 +78,8 @@ pub enum TwoViewError {
         /// Pixels of the second view.
         second: usize,
     },
-    /// A coordinate is NaN or infinite.
-    #[error("match {index} has a coordinate that is not finite")]
+    /// A coordinate is NaN, infinite, or beyond 1e9 pixels.
+    #[error("match {index} has a coordinate that is not finite or beyond 1e9 pixels")]
     NonFinite {
         /// Which match.
         index: usize,
@@ -106,6 +106,72 @@ pub enum TwoViewError {
     },
 }
 
+impl TwoViewConfig {
+    /// Errs at the first field outside its range. A limit that is NaN would refuse nothing.
+    ///
+    /// # Errors
+    /// [`TwoViewError::Parameter`].
+    #[expect(clippy::cast_precision_loss, reason = "only compared and shown")]
+    pub fn validate(&self) -> Result<(), TwoViewError> {
+        let most = f64::MAX;
+        let least = f64::MIN_POSITIVE;
+        let share = [0.0, 1.0];
+        let samples = self.max_samples as f64;
+        let inliers = self.min_inliers as f64;
+        let fields = [
+            (
+                "threshold",
+                self.threshold,
+                [least, 1e6],
+                "positive and at most 1e6",
+            ),
+            (
+                "confidence",
+                self.confidence,
+                [least, 1_f64.next_down()],
+                "between 0 and 1",
+            ),
+            ("max_samples", samples, [1.0, most], "at least 1"),
+            ("min_inliers", inliers, [6.0, most], "at least 6"),
+            ("min_in_front", self.min_in_front, share, "in 0..=1"),
+            ("min_inlier_share", self.min_inlier_share, share, "in 0..=1"),
+            ("min_parallax", self.min_parallax, [0.0, most], "0 or more"),
+            ("planar_share", self.planar_share, share, "in 0..=1"),
+            (
+                "min_residual_parallax",
+                self.min_residual_parallax,
+                [0.0, most],
+                "0 or more",
+            ),
+            (
+                "residual_per_turn",
+                self.residual_per_turn,
+                [0.0, most],
+                "0 or more",
+            ),
+            (
+                "max_direction_sigma",
+                self.max_direction_sigma,
+                [least, f64::INFINITY],
+                "positive",
+            ),
+            (
+                "min_margin",
+                self.min_margin,
+                [f64::NEG_INFINITY, f64::INFINITY],
+                "a number",
+            ),
+            ("rotation_share", self.rotation_share, share, "in 0..=1"),
+        ];
+        for (name, value, [low, high], range) in fields {
+            if !(value >= low && value <= high) {
+                return Err(TwoViewError::Parameter { name, value, range });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Errs at the first thing that makes an estimate impossible.
 pub(super) fn check(
     first: &[Point2<f64>],
@@ -126,33 +192,5 @@ pub(super) fn check(
     {
         return Err(TwoViewError::NonFinite { index });
     }
-    let parameter = |name, value: f64, good: bool, range| {
-        if good {
-            Ok(())
-        } else {
-            Err(TwoViewError::Parameter { name, value, range })
-        }
-    };
-    let TwoViewConfig {
-        threshold,
-        confidence,
-        ..
-    } = *config;
-    #[expect(clippy::cast_precision_loss, reason = "only shown in a message")]
-    let (samples, inliers) = (config.max_samples as f64, config.min_inliers as f64);
-    parameter(
-        "threshold",
-        threshold,
-        threshold > 0.0 && threshold < 1e6,
-        "positive",
-    )?;
-    let probable = confidence > 0.0 && confidence < 1.0;
-    parameter("confidence", confidence, probable, "between 0 and 1")?;
-    parameter("max_samples", samples, config.max_samples > 0, "at least 1")?;
-    parameter(
-        "min_inliers",
-        inliers,
-        config.min_inliers >= 6,
-        "at least 6",
-    )
+    config.validate()
 }

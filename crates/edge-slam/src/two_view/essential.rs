@@ -28,7 +28,8 @@ pub fn candidate_poses(essential: &Matrix3<f64>) -> Option<[Isometry3<f64>; 4]> 
     let longest = crosses
         .iter()
         .max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?;
-    let direction = longest.try_normalize(1e-12)?;
+    // Whatever the length of E: its two singular values are equal, so that the cross product is half its squared norm.
+    let direction = longest.try_normalize(1e-12 * essential.norm_squared())?;
     let scaled = essential * (core::f64::consts::SQRT_2 / essential.norm());
     // Horn 1990: R = cof(E) ∓ [t]× E with unit t.
     let cofactors = Matrix3::from_columns(&[
@@ -94,6 +95,22 @@ mod tests {
                 prop_assert!((e - essential).norm().min((e + essential).norm()) < 1e-6);
             }
         }
+    }
+
+    #[test]
+    fn the_length_of_the_matrix_does_not_matter() {
+        let truth = Isometry3::new(Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.1, -0.2, 0.3));
+        for length in [1e-60, 1e-9, 1.0, 1e9, 1e60] {
+            let candidates = candidate_poses(&(essential_of(&truth) * length)).unwrap();
+            let off = |c: &Isometry3<f64>| {
+                c.rotation.angle_to(&truth.rotation)
+                    + (c.translation.vector - truth.translation.vector).norm()
+            };
+            assert!(candidates.iter().any(|pose| off(pose) < 1e-6), "{length:e}");
+        }
+        // One singular value is no essential matrix.
+        let (a, b) = (Vector3::new(0.3, 0.1, 0.9), Vector3::new(-0.2, 0.8, 0.4));
+        assert!(candidate_poses(&(a * b.transpose())).is_none());
     }
 
     #[test]

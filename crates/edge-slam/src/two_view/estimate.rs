@@ -76,6 +76,28 @@ impl TwoView {
 ///
 /// # Errors
 /// [`TwoViewError`]: bad input, or fewer than `min_inliers` matches agree.
+///
+/// ```
+/// use edge_slam::camera::PinholeCamera;
+/// use edge_slam::nalgebra::{Isometry3, Point3, Vector3};
+/// use edge_slam::two_view::{TwoViewConfig, estimate_two_view};
+/// use rand::SeedableRng;
+/// let camera = PinholeCamera::new(500.0, 500.0, 320.0, 240.0)?;
+/// let motion = Isometry3::new(Vector3::new(0.4, 0.0, 0.1), Vector3::new(0.0, 0.05, 0.0));
+/// let (mut first, mut second) = (Vec::new(), Vec::new());
+/// for k in 0..199_u32 {
+///     let place = |step: u32| f64::from(k * step % 199) / 99.5 - 1.0;
+///     let point = Point3::new(place(37), place(53), 4.0 + place(29));
+///     first.extend(camera.project(&point));
+///     second.extend(camera.project(&(motion * point)));
+/// }
+/// let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+/// let found = estimate_two_view(&first, &second, &camera, &TwoViewConfig::default(), rng)?;
+/// assert!(found.is_confident());
+/// let direction = motion.translation.vector.normalize(); // how far, two views do not say
+/// assert!((found.second_from_first.translation.vector - direction).norm() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn estimate_two_view(
     first: &[Point2<f64>],
     second: &[Point2<f64>],
@@ -283,6 +305,44 @@ mod tests {
     }
 
     #[test]
+    fn limits_that_are_no_numbers_are_refused() {
+        // A turn: with NaN for a limit it would pass for a general motion.
+        let motion = Isometry3::new(Vector3::zeros(), Vector3::new(0.02, 0.15, 0.05));
+        let pairs = views(&motion, 60, 0, |_, _, r| 2.0 + 4.0 * r);
+        let fields: [(&str, fn(&mut TwoViewConfig) -> &mut f64); 11] = [
+            ("threshold", |c| &mut c.threshold),
+            ("confidence", |c| &mut c.confidence),
+            ("min_in_front", |c| &mut c.min_in_front),
+            ("min_inlier_share", |c| &mut c.min_inlier_share),
+            ("min_parallax", |c| &mut c.min_parallax),
+            ("planar_share", |c| &mut c.planar_share),
+            ("min_residual_parallax", |c| &mut c.min_residual_parallax),
+            ("residual_per_turn", |c| &mut c.residual_per_turn),
+            ("max_direction_sigma", |c| &mut c.max_direction_sigma),
+            ("min_margin", |c| &mut c.min_margin),
+            ("rotation_share", |c| &mut c.rotation_share),
+        ];
+        for (field, at) in fields {
+            let mut config = TwoViewConfig::default();
+            assert!(config.validate().is_ok());
+            *at(&mut config) = f64::NAN;
+            let rng = &mut Pcg64::seed_from_u64(1);
+            match estimate_two_view(&pairs.0, &pairs.1, &camera(), &config, rng) {
+                Err(TwoViewError::Parameter { name, .. }) => assert_eq!(name, field),
+                other => panic!("{field}: {other:?}"),
+            }
+        }
+        for (samples, inliers) in [(0, 20), (500, 5)] {
+            let config = TwoViewConfig {
+                max_samples: samples,
+                min_inliers: inliers,
+                ..TwoViewConfig::default()
+            };
+            assert!(config.validate().is_err(), "{samples} {inliers}");
+        }
+    }
+
+    #[test]
     fn nonsense_is_an_error() {
         assert!(matches!(
             estimate(&(Vec::new(), Vec::new())),
@@ -307,11 +367,5 @@ mod tests {
             Err(TwoViewError::NonFinite { index: 3 })
         ));
         assert!(estimate(&(same, Vec::new())).is_err());
-        let rng = &mut Pcg64::seed_from_u64(1);
-        let config = TwoViewConfig {
-            threshold: f64::NAN,
-            ..Default::default()
-        };
-        assert!(estimate_two_view(&[], &[], &camera(), &config, rng).is_err());
     }
 }

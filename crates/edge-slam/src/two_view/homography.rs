@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// H with x₂ ∝ H x₁ from four or more pairs of rays with z = 1, by normalised least squares (h₃₃ fixed in
-/// normalised coordinates); `None` for fewer than four pairs or when three of four are collinear.
+/// normalised coordinates); `None` for fewer than four pairs, slices of different length, and points that leave it open, as four of
+/// which three are collinear.
 #[must_use]
 pub fn homography_from_points(
     first: &[Vector3<f64>],
@@ -22,7 +23,13 @@ pub fn homography_from_points(
         normal += u * u.transpose() + v * v.transpose();
         right += u * q.x + v * q.y;
     }
-    let h = normal.cholesky()?.solve(&right);
+    let factor = normal.cholesky()?;
+    // What rounding leaves of a singular system has a pivot of about 1e-8.
+    let pivots = factor.l_dirty().diagonal();
+    if !(pivots.min() > 1e-6 * pivots.max()) {
+        return None;
+    }
+    let h = factor.solve(&right);
     let matrix = Matrix3::new(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0);
     let homography = b.try_inverse()? * matrix * a;
     let determinant = (homography / homography.norm()).determinant();

@@ -18,6 +18,14 @@ pub struct Triangulated {
 /// Intersects two rays (z = 1): nearest point of both, then two Gauss-Newton steps on the reprojection error.
 ///
 /// `None` when the rays are parallel within 1e-5 radians, or the point lies behind a camera or at infinity.
+///
+/// ```
+/// use edge_slam::nalgebra::{Isometry3, Vector3};
+/// use edge_slam::two_view::triangulate;
+/// let motion = Isometry3::translation(-0.5, 0.0, 0.0); // the second camera stands half a unit to the right
+/// let found = triangulate(&Vector3::new(0.0, 0.0, 1.0), &Vector3::new(-0.1, 0.0, 1.0), &motion);
+/// assert!(found.is_some_and(|found| (found.point.z - 5.0).abs() < 1e-9));
+/// ```
 #[must_use]
 pub fn triangulate(
     first: &Vector3<f64>,

@@ -33,7 +33,10 @@ pub fn direction_deviation(
     second: &[Vector3<f64>],
     sigma: f64,
 ) -> f64 {
-    jackknife(pose, first, second, sigma).map_or(f64::INFINITY, |covariance| {
+    let covariance = jackknife(pose, first, second, sigma);
+    // Eigenvalues of what is not finite are sought without end.
+    let finite = covariance.filter(|c| c.iter().all(|value| value.is_finite()));
+    finite.map_or(f64::INFINITY, |covariance| {
         let square = covariance.symmetric_eigenvalues().max();
         if square.is_finite() {
             square.max(0.0).sqrt()
