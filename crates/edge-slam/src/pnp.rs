@@ -46,6 +46,26 @@ impl Default for PnpConfig {
     }
 }
 
+impl PnpConfig {
+    /// Errs at the first field outside its range.
+    ///
+    /// # Errors
+    /// [`PnpError::Parameter`].
+    #[expect(clippy::cast_precision_loss, reason = "only shown in a message")]
+    pub fn validate(&self) -> Result<(), PnpError> {
+        let fewest = self.min_inliers as f64;
+        let fields = [
+            ("huber", self.huber, self.huber > 0.0, "positive"),
+            ("inlier", self.inlier, self.inlier > 0.0, "positive"),
+            ("min_inliers", fewest, self.min_inliers >= 4, "at least 4"),
+        ];
+        match fields.into_iter().find(|field| !field.2) {
+            Some((name, value, _, range)) => Err(PnpError::Parameter { name, value, range }),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Why a pose was not refined.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -63,6 +83,16 @@ pub enum PnpError {
     /// The observations do not determine all six degrees of freedom.
     #[error("the observations do not determine the pose: all points lie on a line or in one place")]
     Singular,
+    /// A parameter is outside its range.
+    #[error("{name} is {value}, but must be {range}")]
+    Parameter {
+        /// Field of the configuration.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
 }
 
 /// A refined pose.
@@ -84,17 +114,44 @@ pub struct PnpPose {
 /// Cost: O(observations · iterations).
 ///
 /// # Errors
-/// [`PnpError`] when too few observations agree or they leave a degree of freedom open.
+/// [`PnpError`] when a parameter is outside its range, too few observations lie in front of the camera at the guess or agree at the
+/// end, or they leave a degree of freedom open.
+///
+/// ```
+/// use edge_slam::camera::PinholeCamera;
+/// use edge_slam::nalgebra::{Isometry3, Point3, Vector3};
+/// use edge_slam::pnp::{Observation, PnpConfig, refine_pose};
+/// let camera = PinholeCamera::new(500.0, 500.0, 320.0, 240.0)?;
+/// let truth = Isometry3::new(Vector3::new(0.1, 0.0, 0.2), Vector3::new(0.0, 0.1, 0.0));
+/// let seen = |k: u32| {
+///     let point = Point3::new(f64::from(k % 4) - 1.5, f64::from(k / 4) - 1.5, 4.0 + f64::from(k % 3));
+///     let pixel = camera.project(&(truth * point))?;
+///     Some(Observation { point, pixel, sigma: 1.0 })
+/// };
+/// let observations: Vec<_> = (0..16).filter_map(seen).collect();
+/// let found = refine_pose(&observations, &camera, &Isometry3::identity(), &PnpConfig::default())?;
+/// assert!((found.camera_from_world.translation.vector - truth.translation.vector).norm() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn refine_pose(
     observations: &[Observation],
     camera: &PinholeCamera,
     guess: &Isometry3<f64>,
     config: &PnpConfig,
 ) -> Result<PnpPose, PnpError> {
+    config.validate()?;
     let problem = Problem {
         observations,
         camera,
         huber: config.huber,
+    };
+    let enough = |inliers: usize| match inliers >= config.min_inliers {
+        true => Ok(()),
+        false => Err(PnpError::TooFewInliers {
+            inliers,
+            observations: observations.len(),
+            needed: config.min_inliers,
+        }),
     };
     let usable = |&i: &usize| {
         let o = &observations[i];
@@ -106,22 +163,16 @@ pub fn refine_pose(
         finite && o.sigma > 0.0 && o.sigma.is_finite()
     };
     let all: Vec<usize> = (0..observations.len()).filter(usable).collect();
+    enough(problem.inliers(guess, &all, f64::INFINITY).len())?;
     let rounds = config.iterations.div_ceil(2);
     let coarse = problem.minimise(guess, &all, rounds)?;
     let inliers = problem.inliers(&coarse, &all, 2.0 * config.inlier);
     let pose = problem.minimise(&coarse, &inliers, rounds)?;
     let inliers = problem.inliers(&pose, &all, config.inlier);
-    let needed = config.min_inliers.max(4);
-    if inliers.len() < needed {
-        let observations = observations.len();
-        return Err(PnpError::TooFewInliers {
-            inliers: inliers.len(),
-            observations,
-            needed,
-        });
-    }
+    enough(inliers.len())?;
     let (normal, _, square) = problem.normal_equations(&pose, &inliers);
-    let covariance = normal.try_inverse().ok_or(PnpError::Singular)?;
+    let covariance = normal.try_inverse().filter(|_| is_regular(&normal));
+    let covariance = covariance.ok_or(PnpError::Singular)?;
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
     let rms = (square / inliers.len() as f64).sqrt();
     Ok(PnpPose {
@@ -130,6 +181,15 @@ pub fn refine_pose(
         inliers,
         rms,
     })
+}
+
+/// Whether the equations fix all six degrees of freedom by more than rounding, whatever their units: points on a line leave the
+/// turn about it open.
+fn is_regular(normal: &Matrix6<f64>) -> bool {
+    let unit = normal.diagonal().map(f64::sqrt);
+    let scaled = normal.component_div(&(unit * unit.transpose()));
+    // Eigenvalues of what is not finite are sought without end.
+    scaled.iter().all(|value| value.is_finite()) && scaled.symmetric_eigenvalues().min() > 1e-12
 }
 
 /// T <- (Exp(ω), v) T for a step [v, ω].
@@ -298,6 +358,97 @@ mod tests {
             ..same
         };
         assert!(refine_pose(&[nan; 50], &camera(), &identity, &config).is_err());
+    }
+
+    #[test]
+    fn points_on_a_line_leave_a_turn_open() {
+        let truth = Isometry3::new(Vector3::new(0.1, 0.2, 0.0), Vector3::new(0.0, 0.1, 0.05));
+        let seen = |point: Point3<f64>| Observation {
+            point,
+            pixel: camera().project(&(truth * point)).unwrap(),
+            sigma: 1.0,
+        };
+        let run = |points: &[Point3<f64>]| {
+            let observations: Vec<_> = points.iter().map(|&point| seen(point)).collect();
+            let guess = moved(&truth, &Vector6::from_element(0.01));
+            refine_pose(&observations, &camera(), &guess, &PnpConfig::default())
+        };
+        let along = |k: i32| f64::from(k) * 0.1 - 1.0;
+        let line: Vec<_> = (0..20)
+            .map(|k| Point3::new(along(k), 0.5 * along(k), 4.0))
+            .collect();
+        assert_eq!(run(&line), Err(PnpError::Singular));
+        assert!(run(&[Point3::new(0.1, 0.2, 3.0); 20]).is_err());
+        let sharp = Observation {
+            sigma: 1e-200,
+            ..seen(Point3::new(0.3, 0.1, 3.0))
+        };
+        let config = PnpConfig::default();
+        assert!(refine_pose(&[sharp; 20], &camera(), &truth, &config).is_err());
+        // A plane is enough.
+        let plane: Vec<_> = (0..20)
+            .map(|k| Point3::new(along(k), along(7 * k % 20), 4.0))
+            .collect();
+        assert!(run(&plane).is_ok());
+    }
+
+    #[test]
+    fn points_behind_the_camera_do_not_count() {
+        let truth = Isometry3::identity();
+        let mut observations = scene(&truth, 0);
+        for observation in &mut observations[..85] {
+            observation.point.z *= -1.0;
+        }
+        let run = |min_inliers| {
+            let config = PnpConfig {
+                min_inliers,
+                ..PnpConfig::default()
+            };
+            refine_pose(&observations, &camera(), &truth, &config)
+        };
+        let found = run(10).unwrap();
+        assert!(found.inliers.iter().all(|&k| k >= 85));
+        assert!(found.camera_from_world.translation.vector.norm() < 0.05);
+        let few = PnpError::TooFewInliers {
+            inliers: 15,
+            observations: 100,
+            needed: 16,
+        };
+        assert_eq!(run(16), Err(few));
+    }
+
+    #[test]
+    fn parameters_outside_their_range_are_refused() {
+        let config = PnpConfig::default();
+        let seen = scene(&Isometry3::identity(), 0);
+        for (name, config) in [
+            (
+                "huber",
+                PnpConfig {
+                    huber: f64::NAN,
+                    ..config
+                },
+            ),
+            (
+                "inlier",
+                PnpConfig {
+                    inlier: 0.0,
+                    ..config
+                },
+            ),
+            (
+                "min_inliers",
+                PnpConfig {
+                    min_inliers: 3,
+                    ..config
+                },
+            ),
+        ] {
+            match refine_pose(&seen, &camera(), &Isometry3::identity(), &config) {
+                Err(PnpError::Parameter { name: found, .. }) => assert_eq!(found, name),
+                other => panic!("{name}: {other:?}"),
+            }
+        }
     }
 
     proptest! {

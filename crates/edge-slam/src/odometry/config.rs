@@ -1,8 +1,8 @@
 //! What the odometry can be told, and what it refuses.
 
 use crate::feature::{AlignConfig, KltConfig, MatchConfig, OrbConfig, OrbConfigError, Selection};
-use crate::pnp::PnpConfig;
-use crate::two_view::TwoViewConfig;
+use crate::pnp::{PnpConfig, PnpError};
+use crate::two_view::{TwoViewConfig, TwoViewError};
 
 /// How a frame's features are found again.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -74,6 +74,12 @@ pub enum OdometryError {
     /// A field of the feature extractor.
     #[error(transparent)]
     Orb(#[from] OrbConfigError),
+    /// A field of the two-view estimate.
+    #[error("two_view: {0}")]
+    TwoView(#[from] TwoViewError),
+    /// A field of the pose's refinement.
+    #[error("pnp: {0}")]
+    Pnp(#[from] PnpError),
     /// Another field.
     #[error("{name} is {value}, but must be {range}")]
     Parameter {
@@ -93,6 +99,8 @@ impl OdometryConfig {
     /// [`OdometryError`].
     pub fn validate(&self) -> Result<(), OdometryError> {
         self.orb.validate()?;
+        self.two_view.validate()?;
+        self.pnp.validate()?;
         #[expect(clippy::cast_precision_loss, reason = "only shown in a message")]
         let patience = self.patience as f64;
         let share = self.keyframe_share;
@@ -116,5 +124,31 @@ impl OdometryConfig {
             Some((name, value, _, range)) => Err(OdometryError::Parameter { name, value, range }),
             None => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_part_is_checked() {
+        let good = OdometryConfig::default();
+        assert_eq!(good.validate(), Ok(()));
+        let mut bad = good;
+        bad.two_view.min_margin = f64::NAN;
+        assert!(matches!(bad.validate(), Err(OdometryError::TwoView(_))));
+        let mut bad = good;
+        bad.pnp.huber = 0.0;
+        assert!(matches!(bad.validate(), Err(OdometryError::Pnp(_))));
+        let mut bad = good;
+        bad.orb.features = 0;
+        assert!(matches!(bad.validate(), Err(OdometryError::Orb(_))));
+        let mut bad = good;
+        bad.farthest = f64::NAN;
+        let name = "farthest";
+        assert!(
+            matches!(bad.validate(), Err(OdometryError::Parameter { name: found, .. }) if found == name)
+        );
     }
 }
