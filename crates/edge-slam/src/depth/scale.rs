@@ -28,7 +28,7 @@ const FEWEST: usize = 20;
 
 /// Fits one scale to pairs of predicted and reference depth, `NaN` and values that are not positive left out.
 ///
-/// Half of the pairs may be wrong. Cost: O(n log n).
+/// Just under half of the pairs may be wrong. The correlation is that of all pairs: wrong ones lower it. Cost: O(n log n).
 ///
 /// # Errors
 /// [`DepthError::TooFewPairs`] under 20 usable pairs; [`DepthError::Size`] for slices of different length.

@@ -5,7 +5,7 @@ use crate::Frame;
 
 /// Gives each frame its depth, if it can.
 pub trait DepthSource {
-    /// Depth of a frame, the frame's size or smaller by a whole scale; `None` when there is none for it.
+    /// Depth of a frame, pixel by pixel: of the frame's size. `None` when there is none for it.
     ///
     /// # Errors
     /// [`DepthError`] when the source fails; a source that merely knows nothing gives `None`.

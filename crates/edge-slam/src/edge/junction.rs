@@ -68,9 +68,20 @@ impl LJunction {
     }
 }
 
-/// The L-junctions of an image, strongest (longest shorter arm) first, at most one per vertex pixel.
+/// The L-junctions of an image, strongest (longest shorter arm) first, no two vertices within 3 pixels.
 ///
-/// `depth`, when given, must have the image's size to matter. Cost: O(points + lines²).
+/// Without `depth`, and with one of another size than the image's, corners at jumps of depth stay. Cost: O(points + lines²).
+///
+/// ```
+/// use edge_slam::edge::{CannyConfig, JunctionConfig, canny, find_junctions, trace_chains};
+/// use edge_slam::image::GrayImage;
+/// let is_door = |i: usize| (40..120).contains(&(i % 160)) && (30..90).contains(&(i / 160));
+/// let pixels = (0..160 * 120).map(|i| if is_door(i) { 200 } else { 60 });
+/// let edges = canny(&GrayImage::new(pixels.collect(), 160, 120)?.view(), &CannyConfig::default())?;
+/// let found = find_junctions(&edges, &trace_chains(&edges, 20), None, &JunctionConfig::default());
+/// assert_eq!(found.len(), 4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn find_junctions(
     edges: &EdgeMap,
@@ -78,6 +89,9 @@ pub fn find_junctions(
     depth: Option<&DepthImage>,
     config: &JunctionConfig,
 ) -> Vec<LJunction> {
+    let same_size =
+        |depth: &&DepthImage| [depth.width(), depth.height()] == [edges.width, edges.height];
+    let depth = depth.filter(same_size);
     let lines = straight_runs(chains, config);
     let mut junctions = Vec::new();
     for (index, first) in lines.iter().enumerate() {
@@ -244,6 +258,17 @@ mod tests {
             .collect();
         let near = DepthImage::new(near, 160, 120).unwrap();
         assert!(find_junctions(&edges, &chains, Some(&near), &config).is_empty());
+        // The same at half the size would be read in the wrong places.
+        let half = (0..80 * 60).map(|i| {
+            if inside(2 * (i % 80) + 320 * (i / 80)) {
+                1.0
+            } else {
+                2.0
+            }
+        });
+        let half = DepthImage::new(half.collect(), 80, 60).unwrap();
+        let plain = find_junctions(&edges, &chains, None, &config);
+        assert_eq!(find_junctions(&edges, &chains, Some(&half), &config), plain);
         let unknown = DepthImage::new(vec![f32::NAN; 160 * 120], 160, 120).unwrap();
         assert_eq!(
             find_junctions(&edges, &chains, Some(&unknown), &config).len(),

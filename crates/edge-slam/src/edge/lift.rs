@@ -139,6 +139,10 @@ fn line_through(points: &[Point3<f64>], wanted: usize) -> Option<(Point3<f64>, V
         .iter()
         .map(|point| (point - middle) * (point - middle).transpose())
         .sum();
+    // Eigenvalues of what is not finite are sought without end.
+    if !scatter.iter().all(|value| value.is_finite()) {
+        return None;
+    }
     let eigen = SymmetricEigen::new(scatter);
     let direction = eigen.eigenvectors.column(eigen.eigenvalues.imax());
     Some((middle, direction.into_owned()))
@@ -192,6 +196,19 @@ mod tests {
         assert!(lift(|_| 1.5).is_some());
         // The arm to the right lies half a metre behind the one that goes down.
         assert!(lift(|i| if i % 160 > 61 { 2.0 } else { 1.5 }).is_none());
+    }
+
+    #[test]
+    fn places_that_cannot_be_squared_are_no_line() {
+        let pinhole = PinholeCamera::new(1e-250, 1e-250, 80.0, 60.0).unwrap();
+        let depth = DepthImage::new(vec![2.0; 160 * 120], 160, 120).unwrap();
+        let along_the_axes = LJunction {
+            vertex: [80.0, 60.0],
+            ..corner()
+        };
+        let config = JunctionConfig::default();
+        let found = lift_junction(&along_the_axes, &Camera::ideal(pinhole), &depth, &config);
+        assert!(found.is_none(), "{found:?}");
     }
 
     #[test]

@@ -49,13 +49,14 @@ pub fn split_chain(points: &[EdgePoint], tolerance: f64) -> Vec<core::ops::Range
     ranges
 }
 
+/// Distance of p from the stretch between a and b.
 fn chord_distance(p: &EdgePoint, a: &EdgePoint, b: &EdgePoint) -> f64 {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
-    let length = dx.hypot(dy);
-    if length < 1e-9 {
-        return (p.x - a.x).hypot(p.y - a.y);
-    }
-    ((p.x - a.x) * dy - (p.y - a.y) * dx).abs() / length
+    let (x, y) = (p.x - a.x, p.y - a.y);
+    let square = dx * dx + dy * dy;
+    // The chord ends: a chain that turns back lies beside the line through its ends, but not on the chord.
+    let share = ((x * dx + y * dy) / square.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    (x - share * dx).hypot(y - share * dy)
 }
 
 /// The line with the least sum of squared distances from the points; `None` for fewer than two distinct ones.
@@ -124,6 +125,41 @@ mod tests {
             prop_assert!((line.length() - f64::from(n - 1)).abs() < 1e-6);
             prop_assert_eq!(split_chain(&points, 1.5).len(), 1);
         }
+    }
+
+    #[test]
+    fn a_chain_that_turns_back_is_split_where_it_turns() {
+        // Out for 50 pixels and 30 back beside it: the tip lies 1.2 pixels from the line through both ends.
+        let there = (0..=50).map(|k| point(f64::from(k), 0.0));
+        let back = (1..=30).map(|k| point(50.0 - f64::from(k), 1.0));
+        let hairpin: Vec<_> = there.chain(back).collect();
+        assert_eq!(split_chain(&hairpin, 1.5), [0..51, 50..81]);
+        // All in one place, and one place twice.
+        assert_eq!(split_chain(&[point(3.0, 4.0); 5], 1.5), [0..5]);
+        let twice = [point(0.0, 0.0), point(9.0, 0.0), point(0.0, 0.0)];
+        assert_eq!(split_chain(&twice, 1.5), [0..2, 1..3]);
+        assert_eq!(
+            split_chain(&[point(f64::NAN, 0.0), point(1.0, 0.0)], 1.5),
+            [0..2]
+        );
+    }
+
+    #[test]
+    fn a_closed_square_falls_into_its_sides() {
+        let side = |k: u32| match k / 30 {
+            0 => point(f64::from(k), 0.0),
+            1 => point(30.0, f64::from(k - 30)),
+            2 => point(f64::from(90 - k), 30.0),
+            _ => point(0.0, f64::from(120 - k)),
+        };
+        // It begins at a corner and ends beside it; and once in the middle of a side.
+        let square: Vec<_> = (0..120).map(side).collect();
+        assert_eq!(split_chain(&square, 1.5), [0..31, 30..61, 60..91, 90..120]);
+        let turned: Vec<_> = (0..120).map(|k| side((k + 15) % 120)).collect();
+        assert_eq!(
+            split_chain(&turned, 1.5),
+            [0..16, 15..46, 45..76, 75..106, 105..120]
+        );
     }
 
     #[test]

@@ -75,13 +75,16 @@ impl Odometry {
     }
 
     /// Tracks one frame. `depth`, when given, is metric and registered (see [`crate::depth::DepthSource`]); give it
-    /// from the first frame on or never. Any image is accepted; one without features is a lost frame.
+    /// from the first frame on or never. Any image is accepted; one without features is a lost frame. Depth of another size than the
+    /// image is left out: it would be read in the wrong places.
     pub fn track(
         &mut self,
         frame: &Frame<'_>,
         depth: Option<&DepthImage>,
         rng: &mut impl Rng,
     ) -> Tracked {
+        let size = [frame.image.width(), frame.image.height()];
+        let depth = depth.filter(|depth| [depth.width(), depth.height()] == size);
         let frame = &Frame { depth, ..*frame };
         let tracked = match self.keyframe.take() {
             None => self.begin(Isometry3::identity(), frame),
@@ -375,6 +378,21 @@ mod tests {
         let poses =
             core::iter::from_fn(|| odometry.poll()).filter(|u| u.world_from_camera.is_some());
         assert_eq!(poses.count(), 20);
+    }
+
+    #[test]
+    fn depth_of_another_size_is_as_good_as_none() {
+        let rng = &mut rand_pcg::Pcg64::seed_from_u64(1);
+        let half = DepthImage::new(vec![2.0; 150 * 100], 150, 100).unwrap();
+        let image = wall(0);
+        let frame = Frame {
+            time: 0.0,
+            image: image.view(),
+            depth: None,
+        };
+        let with_half = odometry().track(&frame, Some(&half), rng);
+        assert_eq!(with_half, odometry().track(&frame, None, rng));
+        assert_eq!(with_half.state, TrackingState::NotInitialized);
     }
 
     #[test]
