@@ -228,6 +228,57 @@ fn yaw_wraps_at_half_a_turn() {
 }
 
 #[test]
+fn angles_stay_within_half_a_turn_on_either_side() {
+    use core::f64::consts::PI;
+    let sigma = 1_f64.to_radians();
+    for start in [PI, -PI, 3.5, -9.0, 40.0] {
+        let attitude = Vector3::new(start, 0.3, -start);
+        let zero = Vector3::zeros();
+        let mut ekf = Ekf::new(EkfConfig::default(), 0.0, zero, attitude).unwrap();
+        let within = |ekf: &Ekf| {
+            let a = ekf.state().attitude;
+            assert!(a.x.abs() <= PI && a.z.abs() <= PI, "{start}: {a}");
+            // The same rotation as was given.
+            assert!(ekf.state().rotation().angle_to(&rotation(&attitude)) < 3.0 * sigma);
+        };
+        within(&ekf);
+        // What is a whole turn away is no news, by attitude, pose and displacement.
+        for turns in [-1.0, 0.0, 2.0] {
+            let angles = attitude + Vector3::new(turns, 0.0, -turns) * 2.0 * PI;
+            let told = ekf.update_attitude(&AttitudeSample { angles }).unwrap();
+            assert!(told.accepted && told.distance < 1e-12, "{start} {turns}");
+            let (position, distance, inliers) = (zero, 0.0, 100);
+            let pose = VisualPose {
+                position,
+                attitude: angles,
+                distance,
+                inliers,
+            };
+            let told = ekf.update_visual(&pose).unwrap();
+            assert!(told.accepted && told.distance < 1e-12, "{start} {turns}");
+            let odometry = AnchoredOdometry {
+                anchor_position: zero,
+                anchor_rotation: Rotation3::identity(),
+                displacement: zero,
+                attitude: angles,
+                inliers,
+            };
+            let told = ekf.update_odometry(&odometry).unwrap();
+            assert!(told.accepted && told.distance < 1e-12, "{start} {turns}");
+            within(&ekf);
+        }
+        // A degree beyond half a turn ends beyond it.
+        let angles = attitude + Vector3::new(sigma, 0.0, -sigma);
+        assert!(
+            ekf.update_attitude(&AttitudeSample { angles })
+                .unwrap()
+                .accepted
+        );
+        within(&ekf);
+    }
+}
+
+#[test]
 fn outliers_are_rejected_until_the_filter_doubts_itself() {
     let mut ekf = Ekf::new(
         EkfConfig::default(),
@@ -275,6 +326,11 @@ fn bad_samples_change_nothing() {
     ));
     assert!(matches!(
         ekf.predict(&sample(2.0, f64::NAN)),
+        Err(FusionError::NonFinite { .. })
+    ));
+    // Finite numbers whose product is not.
+    assert!(matches!(
+        ekf.predict(&sample(1e200, 1e200)),
         Err(FusionError::NonFinite { .. })
     ));
     let steep = AttitudeSample {

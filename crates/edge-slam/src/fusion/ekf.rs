@@ -8,10 +8,14 @@
 //! An innovation outside its 95 % gate is rejected, and after three rejections in a row the covariance grows tenfold, so that a
 //! filter that has gone astray finds back. The measurements are in `update.rs`.
 
+use core::f64::consts::PI;
+
 use nalgebra::{SMatrix, SVector, Vector3};
 
 use super::measurement::{FlightSample, VelocityFrame};
-use super::state::{NavigationState, StateCovariance, StateVector, rotation, rotation_slopes};
+use super::state::{
+    NavigationState, StateCovariance, StateVector, rotation, rotation_slopes, wrap,
+};
 use super::{EkfConfig, FusionError};
 
 /// What became of a measurement.
@@ -62,9 +66,16 @@ impl Ekf {
         attitude: Vector3<f64>,
     ) -> Result<Self, FusionError> {
         config.validate()?;
+        let within = |angle: f64| {
+            if angle.abs() <= PI {
+                angle
+            } else {
+                wrap(angle)
+            }
+        };
         let state = NavigationState {
             position,
-            attitude,
+            attitude: Vector3::new(within(attitude.x), attitude.y, within(attitude.z)),
             log_scale: 0.0,
         };
         if !(state.is_finite() && time.is_finite()) {
@@ -156,11 +167,17 @@ impl Ekf {
         }
         let dt = sample.time - self.time;
         let transition = self.transition(&sample.velocity, dt);
-        self.state.position += self.world_velocity(&sample.velocity).0 * dt;
+        let mut state = self.state;
+        state.position += self.world_velocity(&sample.velocity).0 * dt;
         let age = sample.time - self.fixed_at;
         let noise = self.config.process.covariance(sample.battery, age, dt);
-        self.covariance = transition * self.covariance * transition.transpose() + noise;
-        self.time = sample.time;
+        let covariance = transition * self.covariance * transition.transpose() + noise;
+        if !(state.is_finite() && covariance.iter().all(|value| value.is_finite())) {
+            return Err(FusionError::NonFinite {
+                name: "what the flight sample leads to",
+            });
+        }
+        (self.state, self.covariance, self.time) = (state, covariance, sample.time);
         Ok(())
     }
 

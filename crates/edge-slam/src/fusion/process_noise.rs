@@ -45,10 +45,11 @@ impl Default for ProcessNoise {
 }
 
 impl ProcessNoise {
-    /// Q for a step of `dt` seconds. `battery` is clamped to 0..=1, `age` to 0..=`longest_age`.
+    /// Q for a step of `dt` seconds. `battery` is clamped to 0..=1, `age` to 0..=`longest_age`. Fields are taken as they are:
+    /// [`Ekf::new`](super::Ekf::new) checks them.
     #[must_use]
     pub fn covariance(&self, battery: f64, age: f64, dt: f64) -> StateCovariance {
-        let age = age.clamp(0.0, self.longest_age);
+        let age = age.min(self.longest_age).max(0.0);
         let factor = 1.0 - battery.clamp(0.0, 1.0) + self.floor + self.growth * age;
         let (p, a) = (self.position, self.attitude);
         let diagonal = SVector::from([p, p, p, a, a, a, self.log_scale]) * (factor * dt);
@@ -98,6 +99,18 @@ mod tests {
             prop_assert!(q(battery, age) > 0.0);
             prop_assert!(q(battery * less, age) >= q(battery, age));
             prop_assert!(q(battery, age + more) >= q(battery, age));
+        }
+    }
+
+    #[test]
+    fn an_age_without_a_limit_does_not_panic() {
+        for longest_age in [-1.0, f64::NAN] {
+            let noise = ProcessNoise {
+                longest_age,
+                ..ProcessNoise::default()
+            };
+            assert!(noise.covariance(0.5, 2.0, 0.1)[(0, 0)] > 0.0);
+            assert!(noise.validate().is_err());
         }
     }
 

@@ -12,7 +12,7 @@ pub(super) type StateVector = SVector<f64, 7>;
 pub struct NavigationState {
     /// World frame, metres.
     pub position: Vector3<f64>,
-    /// Roll φ, pitch θ, yaw ψ, radians, world from body = Rz(ψ) Ry(θ) Rx(φ); roll and yaw in (−π, π].
+    /// Roll φ, pitch θ, yaw ψ, radians, world from body = Rz(ψ) Ry(θ) Rx(φ); roll and yaw in −π..=π.
     pub attitude: Vector3<f64>,
     /// log(metres per unit of the visual odometry).
     pub log_scale: f64,
@@ -50,7 +50,7 @@ impl NavigationState {
     }
 }
 
-/// The same angle in (−π, π].
+/// The same angle in −π..=π.
 pub(super) fn wrap(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
