@@ -174,7 +174,9 @@ fn what_cannot_be_measured_is_said_in_a_line() {
         let line = complaint(&[&["evaluate", &estimate, &truth][..], &more].concat());
         assert!(line.contains(said), "{said:?}: {line}");
     };
-    complain(&good, &folder.join("none"), "neither rgb.txt nor");
+    complain(&good, &folder.join("none"), "none cannot be read");
+    fs::create_dir(folder.join("void")).expect("a folder");
+    complain(&good, &folder.join("void"), "neither rgb.txt nor");
     complain("no/such.ply", &wall, "no/such.ply");
     let header = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n\
                   property float z\nend_header\n";

@@ -64,6 +64,11 @@ fn bad_trajectories_are_named() {
     let truth = file("truth.txt", &helix(1.0));
     let line = complaint(&["evaluate", "no/such.txt", &truth]);
     assert!(line.contains("no/such.txt"), "{line}");
+    let stop = |line: &str| {
+        let (_, pose) = line.split_once(' ').expect("a line");
+        format!("1 {pose}\n")
+    };
+    let stopped: String = helix(1.0).lines().map(stop).collect();
     for (content, said) in [
         ("", "empty"),
         ("# nothing\n", "no pose"),
@@ -74,6 +79,8 @@ fn bad_trajectories_are_named() {
             "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.2 2 0 0 0 0 0 1\n",
             "one line",
         ),
+        // Every pose meets the same true one, which a scale of 0 would explain without an error.
+        (stopped.as_str(), "not unique"),
     ] {
         let line = complaint(&["evaluate", &file("bad.txt", content), &truth]);
         assert!(line.contains(said), "{content:?}: {line}");
@@ -91,7 +98,10 @@ fn folders_that_are_no_sequence_are_refused() {
     let folder = folder("no sequence");
     let out = text(&folder.join("out"));
     let line = complaint(&["slam", &text(&folder), "-o", &out]);
-    assert!(line.contains("neither rgb.txt nor a folder"), "{line}");
+    assert!(
+        line.contains("neither rgb.txt nor PNG or JPEG files"),
+        "{line}"
+    );
     fs::write(folder.join("rgb.txt"), "# none\n").expect("a file");
     let line = complaint(&["slam", &text(&folder), "-o", &out]);
     assert!(line.contains("lists no frame"), "{line}");
@@ -106,6 +116,15 @@ fn folders_that_are_no_sequence_are_refused() {
         line.contains("no frame of the sequence has a depth"),
         "{line}"
     );
+    // A picture that breaks off says so, and not only that it cannot be read.
+    fs::write(folder.join("missing.png"), b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR").expect("a file");
+    let line = complaint(&["slam", &text(&folder), "-o", &out]);
+    let (_, cause) = line
+        .split_once("the PNG cannot be read: ")
+        .expect("a cause");
+    assert!(!cause.starts_with(';'), "{line}");
+    let line = complaint(&["slam", &text(&folder.join("absent")), "-o", &out]);
+    assert!(line.contains("absent cannot be read"), "{line}");
     let usage = explorer(&["slam", &text(&folder), "-o", &out, "--depth", "sonar"]);
     assert_eq!(usage.status.code(), Some(2));
 }

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! TUM    rgb.txt, depth.txt (optional): "timestamp filename" lines; depth 5000 units per metre
-//! plain  color/ (or image/, rgb/, gray/), depth/ (optional): files paired by name; times from timestamps.txt (one per line)
-//!        or 1/30 s apart; depth 1000 units per metre
+//! plain  color/ (or image/, rgb/, gray/, or the images by themselves), depth/ (optional): files in the order in which their names count (2 before 10),
+//!        paired by name; times from timestamps.txt (one line for each image) or 1/30 s apart; depth 1000 units per metre
 //! both   camera-intrinsics.txt (optional): the 3x3 matrix K; without it a TUM folder has the benchmark's camera
 //! ```
 
@@ -14,46 +14,11 @@ use std::path::{Path, PathBuf};
 use super::bounded::{MOST_LIST_BYTES, MOST_PICTURE_BYTES, read_at_most};
 use super::calibration::{read_intrinsics, tum_camera};
 use super::listing::{Entry, pair, parse_list, parse_times};
-use super::{DecodeError, decode_depth, decode_gray};
+use super::order::sort_as_counted;
+use super::{DecodeError, SequenceError, decode_depth, decode_gray};
 use crate::camera::Camera;
 use crate::depth::DepthImage;
 use crate::image::GrayImage;
-
-/// Why a sequence cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SequenceError {
-    /// A file or folder cannot be read, or is larger than a picture (128 MiB) or a list (64 MiB) may be.
-    #[error("{} cannot be read", path.display())]
-    File {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// An image cannot be decoded.
-    #[error("{} cannot be decoded", path.display())]
-    Image {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        source: DecodeError,
-    },
-    /// A line of a list is not "timestamp filename" (or a timestamp, or three numbers).
-    #[error("line {line} of {name} is not understood")]
-    Line {
-        /// File name.
-        name: &'static str,
-        /// Counted from 1.
-        line: usize,
-    },
-    /// The folder is no sequence.
-    #[error("{} has neither rgb.txt nor a folder color, image, rgb or gray with PNG or JPEG files", path.display())]
-    NotASequence {
-        /// The folder.
-        path: PathBuf,
-    },
-}
 
 /// A sequence: times and files. Images are read one at a time.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,6 +72,17 @@ impl ImageSequence {
     /// # Errors
     /// [`SequenceError`] for missing files and lines that are not understood.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
+        let path = || folder.to_owned();
+        match fs::metadata(folder) {
+            Err(source) => {
+                let path = path();
+                return Err(SequenceError::File { path, source });
+            }
+            Ok(found) if !found.is_dir() => {
+                return Err(SequenceError::NotASequence { path: path() });
+            }
+            Ok(_) => {}
+        }
         let own = read_intrinsics(folder)?;
         let (frames, depth_units_per_metre, published) = match optional_text(folder, "rgb.txt")? {
             Some(list) => (tum_frames(folder, &list)?, 5000.0, tum_camera(folder)),
@@ -118,6 +94,13 @@ impl ImageSequence {
             camera: own.or(published),
             depth_units_per_metre,
         })
+    }
+
+    /// The same sequence without its depth images: they are then neither read nor checked.
+    #[must_use]
+    pub fn without_depth(mut self) -> Self {
+        self.frames.iter_mut().for_each(|frame| frame.depth = None);
+        self
     }
 
     /// Number of frames.
@@ -146,28 +129,43 @@ impl ImageSequence {
     /// Reads and decodes frame `index`; `None` past the end.
     ///
     /// # Errors
-    /// [`SequenceError`] when its files cannot be read or decoded.
+    /// [`SequenceError`] when its files cannot be read or decoded, or are not of one size.
     pub fn load(&self, index: usize) -> Result<Option<LoadedFrame>, SequenceError> {
         let Some(files) = self.frames.get(index) else {
             return Ok(None);
         };
-        let decoded = |path: &Path, source| SequenceError::Image {
-            path: path.to_owned(),
-            source,
-        };
-        let image = decode_gray(&read(&files.image)?).map_err(|e| decoded(&files.image, e))?;
+        let image = decode_gray(&read(&files.image)?).map_err(undecodable(&files.image))?;
         let depth = match &files.depth {
             None => None,
-            Some(path) => Some(
-                decode_depth(&read(path)?, self.depth_units_per_metre)
-                    .map_err(|e| decoded(path, e))?,
-            ),
+            Some(path) => Some(self.load_depth(path, [image.width(), image.height()])?),
         };
         Ok(Some(LoadedFrame {
             time: files.time,
             image,
             depth,
         }))
+    }
+
+    /// The depth image of an image of this size.
+    fn load_depth(&self, path: &Path, image: [usize; 2]) -> Result<DepthImage, SequenceError> {
+        let found = decode_depth(&read(path)?, self.depth_units_per_metre);
+        let found = found.map_err(undecodable(path))?;
+        let depth = [found.width(), found.height()];
+        if depth == image {
+            return Ok(found);
+        }
+        Err(SequenceError::DepthSize {
+            path: path.to_owned(),
+            depth,
+            image,
+        })
+    }
+}
+
+fn undecodable(path: &Path) -> impl Fn(DecodeError) -> SequenceError {
+    move |source| SequenceError::Image {
+        path: path.to_owned(),
+        source,
     }
 }
 
@@ -208,13 +206,23 @@ fn tum_frames(folder: &Path, list: &str) -> Result<Vec<FrameFiles>, SequenceErro
 
 fn plain_frames(folder: &Path) -> Result<Vec<FrameFiles>, SequenceError> {
     let images = ["color", "image", "rgb", "gray"]
+        .map(|name| folder.join(name))
         .iter()
-        .map(|name| image_files(&folder.join(name)))
+        .map(PathBuf::as_path)
+        .chain([folder])
+        .map(image_files)
         .find(|files| !files.is_empty());
     let images = images.ok_or_else(|| SequenceError::NotASequence {
         path: folder.to_owned(),
     })?;
     let times = read_times(folder)?;
+    if let Some(times) = times.as_ref().filter(|times| times.len() != images.len()) {
+        return Err(SequenceError::Times {
+            times: times.len(),
+            images: images.len(),
+        });
+    }
+    let times = times.unwrap_or_default();
     let frame = |(index, image): (usize, PathBuf)| {
         let depth = image
             .file_stem()
@@ -245,15 +253,13 @@ fn image_files(folder: &Path) -> Vec<PathBuf> {
         .filter_map(|entry| entry.ok().map(|e| e.path()))
         .filter(is_image)
         .collect();
-    files.sort();
+    sort_as_counted(&mut files);
     files
 }
 
-fn read_times(folder: &Path) -> Result<Vec<f64>, SequenceError> {
-    match optional_text(folder, "timestamps.txt")? {
-        Some(text) => parse_times(&text),
-        None => Ok(Vec::new()),
-    }
+fn read_times(folder: &Path) -> Result<Option<Vec<f64>>, SequenceError> {
+    let text = optional_text(folder, "timestamps.txt")?;
+    text.map(|text| parse_times(&text)).transpose()
 }
 
 #[cfg(test)]
@@ -267,6 +273,98 @@ mod tests {
         fs::create_dir_all(folder.join("gray")).unwrap();
         fs::write(folder.join("gray/1.png"), "not read").unwrap();
         folder
+    }
+
+    fn png(width: u32, height: u32, depth: png::BitDepth) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, width, height);
+        encoder.set_depth(depth);
+        let size = (width * height) as usize * (depth as usize / 8);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&vec![7; size]).unwrap();
+        drop(writer);
+        bytes
+    }
+
+    #[test]
+    fn depth_of_another_size_is_refused_and_can_be_left_out() {
+        let place = folder("depth size");
+        fs::create_dir(place.join("depth")).unwrap();
+        let write = |file: &str, bytes| fs::write(place.join(file), bytes).unwrap();
+        write("gray/1.png", png(4, 2, png::BitDepth::Eight));
+        write("depth/1.png", png(2, 4, png::BitDepth::Sixteen));
+        let sequence = ImageSequence::open(&place).unwrap();
+        let error = sequence.load(0).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains("1.png is 2 x 4, but its image 4 x 2"),
+            "{error}"
+        );
+        write("depth/1.png", png(4, 2, png::BitDepth::Sixteen));
+        assert!(sequence.load(0).unwrap().unwrap().depth.is_some());
+        write("depth/1.png", b"no picture".to_vec());
+        assert!(sequence.load(0).is_err());
+        let alone = sequence.without_depth();
+        assert!(!alone.has_depth() && alone.load(0).unwrap().unwrap().depth.is_none());
+        fs::remove_dir_all(&place).unwrap();
+    }
+
+    #[test]
+    fn every_image_has_its_time_or_none_has() {
+        let place = folder("times");
+        for k in [2, 10] {
+            fs::write(place.join(format!("gray/{k}.png")), "not read").unwrap();
+        }
+        let times = |text: &str| {
+            fs::write(place.join("timestamps.txt"), text).unwrap();
+            ImageSequence::open(&place).map(|s| s.times().collect::<Vec<_>>())
+        };
+        assert_eq!(times("# times\n5\n6\n9.5\n").unwrap(), [5.0, 6.0, 9.5]);
+        for (text, count) in [("", 0), ("5\n6\n", 2), ("5\n6\n7\n8\n", 4)] {
+            let error = times(text).unwrap_err();
+            let said = format!("{count} times for 3 images");
+            assert!(error.to_string().contains(&said), "{error}");
+        }
+        fs::remove_file(place.join("timestamps.txt")).unwrap();
+        let sequence = ImageSequence::open(&place).unwrap();
+        let files: Vec<_> = sequence
+            .frames
+            .iter()
+            .map(|f| f.image.file_stem())
+            .collect();
+        assert_eq!(files, ["1", "2", "10"].map(|name| Some(name.as_ref())));
+        fs::remove_dir_all(&place).unwrap();
+    }
+
+    #[test]
+    fn images_by_themselves_are_a_sequence_too() {
+        let place = folder("by themselves");
+        let alone = place.join("gray");
+        fs::create_dir(alone.join("depth")).unwrap();
+        for file in ["10.jpg", "2.JPEG", "notes.txt", "depth/2.png"] {
+            fs::write(alone.join(file), "not read").unwrap();
+        }
+        let sequence = ImageSequence::open(&alone).unwrap();
+        let files: Vec<_> = sequence.frames.iter().map(|f| &f.image).collect();
+        let expected = ["1.png", "2.JPEG", "10.jpg"].map(|name| alone.join(name));
+        assert_eq!(files, expected.each_ref());
+        let with_depth: Vec<_> = sequence.frames.iter().map(|f| f.depth.is_some()).collect();
+        assert_eq!(with_depth, [false, true, false]);
+        fs::remove_dir_all(&place).unwrap();
+    }
+
+    #[test]
+    fn what_is_no_folder_is_named() {
+        let place = folder("no folder");
+        let error = complaint(&place.join("absent"), "absent");
+        assert!(matches!(error, SequenceError::File { .. }), "{error:?}");
+        let error = complaint(&place.join("gray/1.png"), "1.png");
+        assert!(
+            matches!(error, SequenceError::NotASequence { .. }),
+            "{error:?}"
+        );
+        fs::remove_dir_all(&place).unwrap();
     }
 
     /// What is said of the file, which must be named.

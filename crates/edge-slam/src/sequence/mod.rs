@@ -3,9 +3,12 @@
 mod bounded;
 mod calibration;
 mod decode;
+mod error;
 mod folder;
 mod listing;
+mod order;
 
 pub use bounded::read_at_most;
 pub use decode::{DecodeError, decode_depth, decode_gray};
-pub use folder::{ImageSequence, LoadedFrame, SequenceError};
+pub use error::SequenceError;
+pub use folder::{ImageSequence, LoadedFrame};

@@ -11,7 +11,7 @@ use super::positive;
 
 #[derive(Debug, Args)]
 pub(crate) struct Slam {
-    /// A folder with rgb.txt (and depth.txt) as the TUM benchmark has it, or with color/ (and depth/).
+    /// A folder with rgb.txt (and depth.txt) as the TUM benchmark has it, with color/ (and depth/), or with nothing but pictures.
     #[arg(value_name = "SEQUENCE")]
     pub(crate) sequence: PathBuf,
     /// Folder for trajectory.txt, the map and the pictures; made when missing.

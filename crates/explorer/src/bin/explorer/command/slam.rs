@@ -53,6 +53,11 @@ pub(crate) fn run(arguments: &Slam, output: &Output) -> Result<(), Failure> {
     }
     let camera = tracking::camera_of(arguments, &sequence)?;
     let mut depths = Depths::open(arguments.depth.as_ref(), &sequence)?;
+    let sequence = if depths.is_metric() {
+        sequence
+    } else {
+        sequence.without_depth()
+    };
     let folder = arguments.output.as_path();
     fs::create_dir_all(folder).map_err(|error| Failure::write(folder, &error))?;
     let result = tracking::track(

@@ -59,7 +59,9 @@ impl Epoch {
         let points = self.edges.iter();
         let points = points.flat_map(|(pose, points)| points.iter().map(move |p| pose * p));
         points
-            .filter(|point| taken.insert([point.x, point.y, point.z].map(|x| (x / cell) as i64)))
+            .filter(|point| {
+                taken.insert([point.x, point.y, point.z].map(|x| (x / cell).floor() as i64))
+            })
             .map(Into::into)
             .collect()
     }

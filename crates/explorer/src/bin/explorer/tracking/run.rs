@@ -8,7 +8,7 @@ use edge_slam::feature::KltConfig;
 use edge_slam::image::GrayView;
 use edge_slam::odometry::{Odometry, OdometryConfig, Tracked, Tracker};
 use edge_slam::sequence::{ImageSequence, LoadedFrame, SequenceError};
-use rand::SeedableRng as _;
+use rand::{Rng, SeedableRng as _};
 use slam_bridge::nalgebra::Point3;
 
 use super::{Depths, Epoch, Flight, Fusing, FusionReport};
@@ -51,10 +51,12 @@ pub(crate) fn camera_of(arguments: &Slam, sequence: &ImageSequence) -> Result<Ca
 
 pub(crate) fn unreadable(error: SequenceError) -> Failure {
     use std::error::Error as _;
-    let reason = match error.source() {
-        Some(source) => format!("{error}: {source}"),
-        None => error.to_string(),
-    };
+    let mut reason = error.to_string();
+    let mut cause = error.source();
+    while let Some(source) = cause {
+        reason.push_str(&format!(": {source}"));
+        cause = source.source();
+    }
     Failure::new(
         reason,
         "check that the folder is a recorded sequence and complete",
@@ -96,37 +98,7 @@ pub(crate) fn track(
         let Some(loaded) = sequence.load(index).map_err(unreadable)? else {
             break;
         };
-        // A network is slow and only trusted as a whole: it looks at keyframes.
-        let metric = if depths.is_metric() {
-            depths.depth(&loaded.frame())?
-        } else {
-            None
-        };
-        let epoch = odometry.current_map().epoch;
-        let (tracked, seconds) = timed(|| odometry.track(&loaded.frame(), metric.as_ref(), rng));
-        if odometry.current_map().epoch != epoch {
-            tracking.epochs.push(Epoch::default());
-        }
-        let mut milliseconds = 1e3 * seconds;
-        if let Some(epoch) = tracking.epochs.last_mut() {
-            record(epoch, &loaded, &tracked, &odometry);
-            if tracked.is_keyframe {
-                let (edges, seconds) = timed(|| {
-                    edges(
-                        epoch,
-                        &loaded,
-                        &tracked,
-                        camera,
-                        metric.as_ref(),
-                        depths,
-                        &odometry,
-                    )
-                });
-                edges?;
-                milliseconds += 1e3 * seconds;
-            }
-        }
-        tracking.milliseconds.push(milliseconds);
+        let tracked = track_frame(&loaded, &mut odometry, camera, depths, rng, &mut tracking)?;
         if let Some(fusing) = &mut fusing {
             fuse(fusing, &mut tracking, loaded.time, &tracked, &odometry)?;
         }
@@ -136,6 +108,41 @@ pub(crate) fn track(
         tracking.fusion = fusing.report;
     }
     Ok(tracking)
+}
+
+/// One frame through the odometry; edges too, if it became a keyframe.
+fn track_frame(
+    loaded: &LoadedFrame,
+    odometry: &mut Odometry,
+    camera: Camera,
+    depths: &mut Depths,
+    rng: &mut impl Rng,
+    tracking: &mut Tracking,
+) -> Result<Tracked, Failure> {
+    // A network is slow and only trusted as a whole: it looks at keyframes.
+    let metric = if depths.is_metric() {
+        depths.depth(&loaded.frame())?
+    } else {
+        None
+    };
+    let epoch = odometry.current_map().epoch;
+    let (tracked, seconds) = timed(|| odometry.track(&loaded.frame(), metric.as_ref(), rng));
+    if odometry.current_map().epoch != epoch {
+        tracking.epochs.push(Epoch::default());
+    }
+    let mut milliseconds = 1e3 * seconds;
+    if let Some(epoch) = tracking.epochs.last_mut() {
+        record(epoch, loaded, &tracked, odometry);
+        if tracked.is_keyframe {
+            let metric = metric.as_ref();
+            let (edges, seconds) =
+                timed(|| edges(epoch, loaded, &tracked, camera, metric, depths, odometry));
+            edges?;
+            milliseconds += 1e3 * seconds;
+        }
+    }
+    tracking.milliseconds.push(milliseconds);
+    Ok(tracked)
 }
 
 /// The filter, where there is telemetry.
