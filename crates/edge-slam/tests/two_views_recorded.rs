@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test file")]
 #![cfg(feature = "image-files")]
 
-use std::path::PathBuf;
+mod shared;
 
 use edge_slam::camera::Camera;
 use edge_slam::evaluation::TimedPose;
@@ -13,6 +13,7 @@ use edge_slam::odometry::OdometryConfig;
 use edge_slam::sequence::ImageSequence;
 use edge_slam::two_view::{TwoView, TwoViewConfig, essential_of, estimate_two_view, sampson};
 use rand::SeedableRng;
+use shared::shared;
 use slam_bridge::read_tum;
 
 struct Recorded {
@@ -33,13 +34,7 @@ type Pairs = (Vec<Point2<f64>>, Vec<Point2<f64>>);
 
 impl Recorded {
     fn open(name: &str, truth: &str) -> Option<Self> {
-        let root = std::env::var("EXPLORER_DATA")
-            .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").to_owned());
-        let folder: PathBuf = [root.as_str(), "data", name].iter().collect();
-        if !folder.is_dir() {
-            println!("skipped: {} is not there", folder.display());
-            return None;
-        }
+        let folder = shared(&["data", name])?;
         let sequence = ImageSequence::open(&folder).unwrap();
         let truth = std::fs::read(folder.join(truth)).unwrap();
         let config = OdometryConfig::default();

@@ -46,6 +46,21 @@ pub fn klt_pyramid(view: &GrayView<'_>) -> Pyramid {
 ///
 /// `guesses` are places to begin at (predictions), as many as points; missing ones begin where the point was.
 /// Pyramids of images of different sizes lose everything. Cost: O(points · patch · steps).
+///
+/// ```
+/// use edge_slam::feature::{KltConfig, klt_pyramid, track_points};
+/// use edge_slam::image::GrayImage;
+/// let image = |shift: usize| {
+///     let mut image = GrayImage::filled(60, 60, 40);
+///     for y in 20..35 {
+///         image.pixels_mut()[y * 60 + 20 + shift..y * 60 + 35 + shift].fill(200);
+///     }
+///     klt_pyramid(&image.view())
+/// };
+/// let found = track_points(&image(0), &image(3), &[[20.0, 20.0], [2.0, 2.0]], &[], &KltConfig::default());
+/// assert!(found[0].is_some_and(|[x, y]| (x - 23.0).abs() < 0.1 && (y - 20.0).abs() < 0.1));
+/// assert_eq!(found[1], None); // too near to the edge
+/// ```
 #[must_use]
 pub fn track_points(
     first: &Pyramid,

@@ -63,9 +63,10 @@ impl Kernel for SmoothRow<'_> {
 
         let width = target.len();
         let body = &mut line[BINOMIAL_RADIUS..BINOMIAL_RADIUS + width];
-        vertical(rows, weights, body);
+        weigh(*rows, weights, body);
         extend(line, width);
-        horizontal(line, weights, target);
+        let shifted = core::array::from_fn(|k| &line[k..]);
+        weigh(shifted, weights, target);
     }
 }
 
@@ -108,24 +109,11 @@ fn mirror(shifted: usize, offset: usize, length: usize) -> usize {
     .min(last)
 }
 
+/// Each pixel of `output` from the pixels of seven lines in its place.
 #[inline(always)]
-fn vertical(rows: &[&[u8]; 7], weights: &[u16; 4], output: &mut [u8]) {
+fn weigh(lines: [&[u8]; 7], weights: &[u16; 4], output: &mut [u8]) {
     let n = output.len();
-    let [a, b, c, d, e, f, g] = rows.map(|row| &row[..n]);
-    let [w0, w1, w2, w3] = *weights;
-    for i in 0..n {
-        let sum = w0 * u16::from(d[i])
-            + w1 * (u16::from(c[i]) + u16::from(e[i]))
-            + w2 * (u16::from(b[i]) + u16::from(f[i]))
-            + w3 * (u16::from(a[i]) + u16::from(g[i]));
-        output[i] = (sum.saturating_add(128) >> 8) as u8;
-    }
-}
-
-#[inline(always)]
-fn horizontal(line: &[u8], weights: &[u16; 4], output: &mut [u8]) {
-    let n = output.len();
-    let [a, b, c, d, e, f, g] = [0, 1, 2, 3, 4, 5, 6].map(|k| &line[k..k + n]);
+    let [a, b, c, d, e, f, g] = lines.map(|line| &line[..n]);
     let [w0, w1, w2, w3] = *weights;
     for i in 0..n {
         let sum = w0 * u16::from(d[i])

@@ -8,6 +8,16 @@ use crate::simd::{Kernel, widest};
 ///
 /// Ties in distance go to the lower index (and fail any ratio below 1). Empty slices give no match.
 /// Cost: O(n m), about 1 ns per pair.
+///
+/// ```
+/// use edge_slam::feature::{Descriptor, MatchConfig, match_descriptors};
+/// let found = match_descriptors(
+///     &[Descriptor([7; 4])],
+///     &[Descriptor([!7; 4]), Descriptor([5; 4])],
+///     &MatchConfig::default(),
+/// );
+/// assert_eq!((found[0].second, found[0].distance), (1, 4));
+/// ```
 #[must_use]
 pub fn match_descriptors(
     first: &[Descriptor],
@@ -62,11 +72,8 @@ impl Kernel for Compare<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::feature::matching::descriptors;
     use proptest::prelude::*;
-
-    fn descriptors(max: usize) -> impl Strategy<Value = Vec<Descriptor>> {
-        prop::collection::vec(any::<[u64; 4]>().prop_map(Descriptor), 0..max)
-    }
 
     proptest! {
         #[test]

@@ -157,11 +157,8 @@ impl KeypointGrid {
 mod tests {
     use super::*;
     use crate::feature::match_descriptors;
+    use crate::feature::matching::descriptors;
     use proptest::prelude::*;
-
-    fn descriptors(max: usize) -> impl Strategy<Value = Vec<Descriptor>> {
-        prop::collection::vec(any::<[u64; 4]>().prop_map(Descriptor), 0..max)
-    }
 
     proptest! {
         #[test]

@@ -108,3 +108,13 @@ impl Nearest {
         })
     }
 }
+
+/// Up to `max` descriptors of any bits, for the tests of the searches.
+#[cfg(test)]
+fn descriptors(
+    max: usize,
+) -> impl proptest::strategy::Strategy<Value = Vec<crate::feature::Descriptor>> {
+    use proptest::prelude::*;
+    let descriptor = any::<[u64; 4]>().prop_map(crate::feature::Descriptor);
+    prop::collection::vec(descriptor, 0..max)
+}
