@@ -171,8 +171,9 @@ pub fn refine_pose(
     let inliers = problem.inliers(&pose, &all, config.inlier);
     enough(inliers.len())?;
     let (normal, _, square) = problem.normal_equations(&pose, &inliers);
-    let covariance = normal.try_inverse().filter(|_| is_regular(&normal));
-    let covariance = covariance.ok_or(PnpError::Singular)?;
+    let covariance = normal.try_inverse();
+    let determined = covariance.filter(|_| problem.is_determined(&pose, &inliers));
+    let covariance = determined.ok_or(PnpError::Singular)?;
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
     let rms = (square / inliers.len() as f64).sqrt();
     Ok(PnpPose {
@@ -181,15 +182,6 @@ pub fn refine_pose(
         inliers,
         rms,
     })
-}
-
-/// Whether the equations fix all six degrees of freedom by more than rounding, whatever their units: points on a line leave the
-/// turn about it open.
-fn is_regular(normal: &Matrix6<f64>) -> bool {
-    let unit = normal.diagonal().map(f64::sqrt);
-    let scaled = normal.component_div(&(unit * unit.transpose()));
-    // Eigenvalues of what is not finite are sought without end.
-    scaled.iter().all(|value| value.is_finite()) && scaled.symmetric_eigenvalues().min() > 1e-12
 }
 
 /// T <- (Exp(ω), v) T for a step [v, ω].
@@ -291,6 +283,22 @@ impl Problem<'_> {
         (normal, gradient, square)
     }
 
+    /// Whether the observations fix all six degrees of freedom by more than rounding: points on a line leave the turn about it open.
+    /// Each counts the same, or one that is very near would hide what the others say.
+    fn is_determined(&self, pose: &Isometry3<f64>, chosen: &[usize]) -> bool {
+        let mut normal = Matrix6::zeros();
+        for &index in chosen {
+            if let Some((_, jacobian)) = self.residual(pose, index) {
+                let unit = jacobian / jacobian.norm();
+                normal += unit.tr_mul(&unit);
+            }
+        }
+        let unit = normal.diagonal().map(f64::sqrt);
+        let scaled = normal.component_div(&(unit * unit.transpose()));
+        // Eigenvalues of what is not finite are sought without end.
+        scaled.iter().all(|value| value.is_finite()) && scaled.symmetric_eigenvalues().min() > 1e-12
+    }
+
     fn inliers(&self, pose: &Isometry3<f64>, all: &[usize], limit: f64) -> Vec<usize> {
         let near = |&i: &usize| {
             self.residual(pose, i)
@@ -385,6 +393,12 @@ mod tests {
         };
         let config = PnpConfig::default();
         assert!(refine_pose(&[sharp; 20], &camera(), &truth, &config).is_err());
+        // A point in the camera's face does not hide that the others determine the pose.
+        let mut spread = scene(&truth, 0);
+        let near = truth.inverse() * Point3::new(1e-9, 2e-9, 8e-9);
+        spread.push(seen(near));
+        let found = refine_pose(&spread, &camera(), &truth, &config);
+        assert!(found.is_ok(), "{found:?}");
         // A plane is enough.
         let plane: Vec<_> = (0..20)
             .map(|k| Point3::new(along(k), along(7 * k % 20), 4.0))
