@@ -135,13 +135,11 @@ mod tests {
         let hairpin: Vec<_> = there.chain(back).collect();
         assert_eq!(split_chain(&hairpin, 1.5), [0..51, 50..81]);
         // All in one place, and one place twice.
-        assert_eq!(split_chain(&[point(3.0, 4.0); 5], 1.5), [0..5]);
+        let whole = |points: &[EdgePoint]| split_chain(points, 1.5) == vec![0..points.len(); 1];
+        assert!(whole(&[point(3.0, 4.0); 5]));
         let twice = [point(0.0, 0.0), point(9.0, 0.0), point(0.0, 0.0)];
         assert_eq!(split_chain(&twice, 1.5), [0..2, 1..3]);
-        assert_eq!(
-            split_chain(&[point(f64::NAN, 0.0), point(1.0, 0.0)], 1.5),
-            [0..2]
-        );
+        assert!(whole(&[point(f64::NAN, 0.0), point(1.0, 0.0)]));
     }
 
     #[test]

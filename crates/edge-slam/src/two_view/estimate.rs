@@ -306,10 +306,11 @@ mod tests {
 
     #[test]
     fn limits_that_are_no_numbers_are_refused() {
+        type Field = fn(&mut TwoViewConfig) -> &mut f64;
         // A turn: with NaN for a limit it would pass for a general motion.
         let motion = Isometry3::new(Vector3::zeros(), Vector3::new(0.02, 0.15, 0.05));
         let pairs = views(&motion, 60, 0, |_, _, r| 2.0 + 4.0 * r);
-        let fields: [(&str, fn(&mut TwoViewConfig) -> &mut f64); 11] = [
+        let fields: [(&str, Field); 11] = [
             ("threshold", |c| &mut c.threshold),
             ("confidence", |c| &mut c.confidence),
             ("min_in_front", |c| &mut c.min_in_front),
