@@ -1,7 +1,5 @@
 //! Gradient boosting of small complete trees for a yes-or-no answer (Friedman 2001, with Newton steps as in XGBoost).
 
-use exit_finder::CUES;
-
 const DEPTH: usize = 4;
 const NODES: usize = (1 << DEPTH) - 1;
 const LEAVES: usize = 1 << DEPTH;
@@ -13,8 +11,6 @@ const CELLS: usize = 32;
 /// Pull of the leaves to zero, and the weight that a child needs.
 const PULL: f64 = 2.0;
 const MIN_WEIGHT: f64 = 8.0;
-
-type Cues = [f64; CUES];
 
 /// A complete tree: node k has the children 2k + 1 (cue at most the threshold) and 2k + 2.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +51,7 @@ impl Slope {
 }
 
 impl Forest {
-    pub(crate) fn fit(cues: &[Cues], right: &[bool]) -> Self {
+    pub(crate) fn fit<const CUES: usize>(cues: &[[f64; CUES]], right: &[bool]) -> Self {
         let thresholds = thresholds(cues);
         let cells: Vec<[u8; CUES]> = cues
             .iter()
@@ -92,7 +88,7 @@ fn slope(odds: f64, right: bool) -> Slope {
     }
 }
 
-fn thresholds(cues: &[Cues]) -> Vec<Vec<f32>> {
+fn thresholds<const CUES: usize>(cues: &[[f64; CUES]]) -> Vec<Vec<f32>> {
     let quantiles = |c: usize| {
         let mut values: Vec<f64> = cues.iter().map(|row| row[c]).collect();
         values.sort_by(f64::total_cmp);
@@ -109,8 +105,8 @@ fn cell(thresholds: &[f32], value: f64) -> u8 {
 }
 
 /// One tree, and the leaf that each example falls into.
-fn grow(
-    cues: &[Cues],
+fn grow<const CUES: usize>(
+    cues: &[[f64; CUES]],
     cells: &[[u8; CUES]],
     slopes: &[Slope],
     thresholds: &[Vec<f32>],
@@ -153,7 +149,7 @@ fn grow(
 }
 
 /// The cue and the threshold of the largest gain.
-fn best_split(sums: &[[Slope; CELLS]; CUES], thresholds: &[Vec<f32>]) -> Option<(usize, usize)> {
+fn best_split(sums: &[[Slope; CELLS]], thresholds: &[Vec<f32>]) -> Option<(usize, usize)> {
     let mut all = Slope::default();
     sums[0].iter().for_each(|sum| all.add(*sum));
     let mut best = None;

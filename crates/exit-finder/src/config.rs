@@ -72,10 +72,6 @@ pub struct RangeAware {
     /// Smallest probability of an exit ([`crate::ScoreParts`]), in `[0, 1]`. Less finds more doors and more that
     /// are none.
     pub min_probability: f64,
-    /// Where rays are given, doubtful points ([`crate::ExitView::doubtful`]) are looked at while they are at most this share of the map, in
-    /// `[0, 1]`: what a cleaning by observations takes out of a good map are mostly far points that are right, what it takes out of a bad
-    /// one are mostly wrong.
-    pub max_doubtful: f64,
     /// Smallest width between the jambs as a share of the median range; rules where the scale is
     /// unknown.
     pub min_relative_width: f64,
@@ -156,7 +152,6 @@ impl Default for RangeAware {
             min_wall: 4,
             margin: 20f64.to_radians(),
             min_probability: 0.8,
-            max_doubtful: 0.13,
             min_relative_width: 0.15,
             max_relative_width: 2.0,
             min_expected: 8.0,
@@ -250,7 +245,6 @@ impl RangeAware {
             ("min_wall", self.min_wall as f64, 1.0, 1e9, "1.. bins"),
             ("margin", self.margin, 0.0, FRAC_PI_2, "[0, π/2] rad"),
             ("min_probability", self.min_probability, 0.0, 1.0, "[0, 1]"),
-            ("max_doubtful", self.max_doubtful, 0.0, 1.0, "[0, 1]"),
             (
                 "min_relative_width",
                 self.min_relative_width,

@@ -6,7 +6,7 @@ use crate::exit::ExitReport;
 use crate::plane::AffinePlane;
 use crate::points::PointLike;
 use crate::profile::RangeProfile;
-use crate::rule::exits_of_profile;
+use crate::rule::{SecondLook, exits_of_cleaned, exits_of_profile, looked_at_twice};
 use crate::view::ExitView;
 
 /// Where does the range profile around `agent` open?
@@ -44,22 +44,52 @@ pub fn find_exits<P: PointLike>(
     view: &ExitView<'_>,
     config: &ExitConfig,
 ) -> Result<ExitReport, ExitError> {
-    let doubtful = believable(points.len(), view, config);
-    let closing = view.virtual_points;
-    let profile = RangeProfile::of_cleaned(points, doubtful, closing, agent, plane, config)?;
-    exits_of_profile(profile, view, config)
+    let (profile, kept) = looks(points, agent, plane, view, config)?;
+    match kept {
+        Some(kept) => exits_of_cleaned(profile, &kept, view, config),
+        None => exits_of_profile(profile, view, config),
+    }
 }
 
-/// The doubtful points, or none where they are too many to be mostly right. A cleaning that does not know who saw what takes out right
-/// points in any number.
-fn believable<'a>(kept: usize, view: &ExitView<'a>, config: &ExitConfig) -> &'a [[f64; 3]] {
-    let most = match &config.rule {
-        Rule::RangeAware(rule) if !view.rays.is_empty() => rule.max_doubtful,
-        _ => 1.0,
-    };
-    let doubtful = view.doubtful;
-    let share = doubtful.len() as f64 / (kept + doubtful.len()).max(1) as f64;
-    if share <= most { doubtful } else { &[] }
+/// All stretches of walls that may be openings in a map that was cleaned by its observations (`view.rays` and `view.doubtful` are
+/// given), with the cues of the second look at them; what [`find_exits`] chooses from. Empty for other maps, and for Algorithm 2.
+///
+/// # Errors
+/// As [`find_exits`].
+pub fn candidates_of_cleaned<P: PointLike>(
+    points: &[P],
+    agent: [f64; 3],
+    plane: &AffinePlane,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> Result<Vec<SecondLook>, ExitError> {
+    let (profile, kept) = looks(points, agent, plane, view, config)?;
+    match kept {
+        Some(kept) => looked_at_twice(&profile, &kept, view, config),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// The profile of all points, doubtful ones as well, and, where the cleaning knew who saw what, that of the kept ones alone.
+fn looks<P: PointLike>(
+    points: &[P],
+    agent: [f64; 3],
+    plane: &AffinePlane,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> Result<(RangeProfile, Option<RangeProfile>), ExitError> {
+    let closing = view.virtual_points;
+    let all = RangeProfile::of_cleaned(points, view.doubtful, closing, agent, plane, config)?;
+    let is_paper = matches!(config.rule, Rule::Paper(_));
+    if is_paper || view.rays.is_empty() || view.doubtful.is_empty() {
+        return Ok((all, None));
+    }
+    match RangeProfile::of_points(points, closing, agent, plane, config) {
+        Ok(kept) => Ok((all, Some(kept))),
+        // Hardly anything was kept: there is one look.
+        Err(ExitError::InsufficientMap { .. }) => Ok((all, None)),
+        Err(error) => Err(error),
+    }
 }
 
 #[cfg(test)]
@@ -68,7 +98,7 @@ mod tests {
     use crate::view::Ray;
 
     #[test]
-    fn too_many_doubtful_points_are_left_out() {
+    fn a_map_cleaned_by_observations_is_looked_at_twice() {
         let on_circle = |k: u32| {
             let (sin, cos) = f64::from(k).sin_cos();
             [2.0 * cos, 2.0 * sin, 0.0]
@@ -80,21 +110,24 @@ mod tests {
             origin: [0.0; 3],
             end: kept[0],
         };
-        let given = |doubtful: &[[f64; 3]], rays: &[Ray], config: &ExitConfig| {
+        let given = |kept: &[[f64; 3]], doubtful: &[[f64; 3]], rays: &[Ray], config| {
             let view = ExitView {
                 doubtful,
                 rays,
                 ..ExitView::default()
             };
-            let report = find_exits(&kept, [0.0; 3], &plane, &view, config).unwrap();
-            report.profile.counts.given
+            let (all, alone) = looks(kept, [0.0; 3], &plane, &view, config).unwrap();
+            (all.counts.given, alone.map(|profile| profile.counts.given))
         };
-        // Of a thousand points 130 are the most by default.
         let default = ExitConfig::default();
-        assert_eq!(given(&doubtful[..130], &[ray], &default), 1000);
-        assert_eq!(given(&doubtful, &[ray], &default), 870);
-        // Without observations the cleaning knew little; Algorithm 2 knows no doubt.
-        assert_eq!(given(&doubtful, &[], &default), 1001);
-        assert_eq!(given(&doubtful, &[ray], &ExitConfig::paper()), 1001);
+        assert_eq!(given(&kept, &doubtful, &[ray], &default), (1001, Some(870)));
+        // Without observations the cleaning knew little; Algorithm 2 knows no doubt; of a few points no profile is made.
+        assert_eq!(given(&kept, &doubtful, &[], &default), (1001, None));
+        assert_eq!(given(&kept, &[], &[ray], &default), (870, None));
+        assert_eq!(given(&kept[..20], &doubtful, &[ray], &default), (151, None));
+        assert_eq!(
+            given(&kept, &doubtful, &[ray], &ExitConfig::paper()),
+            (1001, None)
+        );
     }
 }

@@ -21,12 +21,15 @@ pub use config::{
 };
 pub use error::{ExitError, PlaneError};
 pub use exit::{Exit, ExitKind, ExitReport, Rejected, Rejection};
-pub use finder::find_exits;
+pub use finder::{candidates_of_cleaned, find_exits};
 pub use passage::{BandReading, BandState, Passage, Shape};
 pub use plane::{AffinePlane, BASIS_TOLERANCE, MIN_SPREAD_RATIO};
 pub use plane_fit::PlaneFit;
 pub use points::PointLike;
 pub use profile::{BinStats, LiveProfile, PointCounts, RangeProfile, Strip};
-pub use rule::{CUE_NAMES, CUES, Opening, ScoreParts, candidates_of_profile, exits_of_profile};
+pub use rule::{
+    CUE_NAMES, CUES, Opening, SECOND_CUES, ScoreParts, SecondLook, candidates_of_profile,
+    exits_of_profile,
+};
 pub use sector::Sector;
 pub use view::{ExitView, Gaze, Ray};

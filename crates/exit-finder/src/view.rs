@@ -17,8 +17,8 @@ pub struct ExitView<'a> {
     /// search and nowhere else; they count neither for `min_points` nor for the mean range.
     pub virtual_points: &'a [[f64; 3]],
     /// What a cleaning took out of the map. These points are looked at too, so that no far point behind a door is lost,
-    /// but what is seen mostly by them is believed less; see [`crate::RangeProfile::of_cleaned`]. Where they are more than
-    /// [`crate::RangeAware::max_doubtful`] of a map with `rays`, they are left out.
+    /// but what is seen mostly by them is believed less; see [`crate::RangeProfile::of_cleaned`]. Where `rays` are given too, the search
+    /// looks once more among the kept points alone and judges what it finds by both looks.
     pub doubtful: &'a [[f64; 3]],
     /// Which keyframe saw which point, kept or doubtful. Rays to one point follow one another. Where there are
     /// no gazes, they tell what was looked at. Empty: not known.

@@ -9,6 +9,8 @@ mod paper;
 mod range_aware;
 mod ranking;
 mod score;
+mod second_forest;
+mod second_look;
 mod sight;
 mod smoothing;
 mod unseen;
@@ -18,6 +20,7 @@ pub use cues::{CUE_NAMES, CUES};
 pub(crate) use line::Line;
 pub use openings::Opening;
 pub use score::ScoreParts;
+pub use second_look::{SECOND_CUES, SecondLook};
 
 use crate::config::{ExitConfig, Rule};
 use crate::error::ExitError;
@@ -44,6 +47,33 @@ pub fn exits_of_profile(
     };
     ranking::rank(&mut report, view);
     Ok(report)
+}
+
+/// The same on two profiles of a map that a cleaning took points out of: of all points, and of those that were kept.
+pub(crate) fn exits_of_cleaned(
+    all: RangeProfile,
+    kept: &RangeProfile,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> Result<ExitReport, ExitError> {
+    let Rule::RangeAware(rule) = &config.rule else {
+        return exits_of_profile(all, view, config);
+    };
+    let mut report = range_aware::exits_of_cleaned(all, kept, rule, view, config);
+    ranking::rank(&mut report, view);
+    Ok(report)
+}
+
+/// The candidates of both profiles, with the cues of the second look.
+pub(crate) fn looked_at_twice(
+    all: &RangeProfile,
+    kept: &RangeProfile,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> Result<Vec<SecondLook>, ExitError> {
+    let of = |profile| candidates_of_profile(profile, view, config);
+    let share = second_look::taken_out(all, kept);
+    Ok(second_look::looked_at_twice(of(all)?, of(kept)?, share))
 }
 
 /// All stretches of walls that may be openings, with their cues and whatever their probability: what the range-aware rule

@@ -8,7 +8,8 @@
 
 use super::contour::Contour;
 use super::openings::{Opening, openings};
-use super::score::{ScoreParts, bias};
+use super::score::{ScoreParts, bias, second_bias};
+use super::second_look::{SecondLook, looked_at_twice, taken_out};
 use super::sight::Sight;
 use super::unseen::{points_elsewhere, unseen_bins};
 use super::wall::walls;
@@ -26,25 +27,40 @@ pub(super) fn exits(
     config: &ExitConfig,
 ) -> ExitReport {
     let scene = Scene::new(&profile, rule, view, config);
+    let verdicts = scene.verdicts(scene.likely());
+    report(verdicts, profile)
+}
+
+/// The same of a map that was cleaned, by its profiles with and without what was taken out.
+pub(super) fn exits_of_cleaned(
+    all: RangeProfile,
+    kept: &RangeProfile,
+    rule: &RangeAware,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> ExitReport {
+    let scene = Scene::new(&all, rule, view, config);
+    let among_kept = candidates(kept, rule, view, config);
+    let found = looked_at_twice(scene.openings(), among_kept, taken_out(&all, kept));
+    let verdicts = scene.verdicts(scene.likely_by_both(found));
+    report(verdicts, all)
+}
+
+fn report(verdicts: Verdicts, profile: RangeProfile) -> ExitReport {
     let (mut exits, mut rejected) = (Vec::new(), Vec::new());
-    let jumps = scene.jumps();
-    let gaps = scene.gaps(&jumps);
-    for (run, verdict) in jumps.into_iter().chain(gaps) {
+    let sector = |run: Run| run.sector(profile.bins.len());
+    for (run, verdict) in verdicts.jumps.into_iter().chain(verdicts.gaps) {
         match verdict {
             Ok(exit) => exits.push(exit),
             Err(reason) => rejected.push(Rejected {
-                sector: run.sector(scene.n()),
+                sector: sector(run),
                 reason,
             }),
         }
     }
-    let unseen = circular_runs(&scene.unseen)
-        .into_iter()
-        .map(|run| run.sector(scene.n()))
-        .collect();
     ExitReport {
         exits,
-        unseen,
+        unseen: verdicts.unseen.into_iter().map(sector).collect(),
         rejected,
         profile,
     }
@@ -63,6 +79,13 @@ pub(super) fn candidates(
 /// A candidate with its parts and its probability.
 type Judged = (Opening, ScoreParts, f64);
 type Verdict = (Run, Result<Exit, Rejection>);
+
+/// What the rule says of the openings in walls and of the empty runs, and what was never looked at.
+struct Verdicts {
+    jumps: Vec<Verdict>,
+    gaps: Vec<Verdict>,
+    unseen: Vec<Run>,
+}
 
 /// The profile with what is known about each bin.
 struct Scene<'a> {
@@ -114,18 +137,45 @@ impl<'a> Scene<'a> {
         found
     }
 
-    /// The likeliest openings that do not overlap. Those narrower than needed come last and only where no wider one lies.
-    fn jumps(&self) -> Vec<Verdict> {
+    fn verdicts(&self, likely: Vec<Judged>) -> Verdicts {
+        let jumps = self.jumps(likely);
+        Verdicts {
+            gaps: self.gaps(&jumps),
+            jumps,
+            unseen: circular_runs(&self.unseen),
+        }
+    }
+
+    /// The openings that are likely enough.
+    fn likely(&self) -> Vec<Judged> {
         let (bias, least) = (bias(), self.rule.min_probability);
         let openings = self.openings().into_iter();
-        let mut likely: Vec<Judged> = openings
+        openings
             .filter(|opening| opening.rough_probability(bias) >= least - ROUNDING)
             .map(|opening| {
                 let parts = opening.parts();
                 (opening, parts, parts.probability())
             })
             .filter(|(_, _, probability)| *probability >= least)
-            .collect();
+            .collect()
+    }
+
+    /// The same by two looks.
+    fn likely_by_both(&self, found: Vec<SecondLook>) -> Vec<Judged> {
+        let (bias, least) = (second_bias(), self.rule.min_probability);
+        found
+            .into_iter()
+            .map(|look| (look.rough_probability(bias), look))
+            .filter(|(probability, _)| *probability >= least)
+            .map(|(probability, look)| {
+                let parts = look.parts(bias);
+                (look.opening, parts, probability)
+            })
+            .collect()
+    }
+
+    /// The likeliest openings that do not overlap. Those narrower than needed come last and only where no wider one lies.
+    fn jumps(&self, mut likely: Vec<Judged>) -> Vec<Verdict> {
         likely.sort_by(|(a, _, p), (b, _, q)| {
             (b.width >= self.needed)
                 .cmp(&(a.width >= self.needed))

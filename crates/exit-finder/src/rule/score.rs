@@ -9,6 +9,8 @@
 use super::cues::CUES;
 use super::forest::{BASE, TREES};
 use super::openings::Opening;
+use super::second_forest;
+use super::second_look::SecondLook;
 
 /// Depth of a tree.
 pub(super) const DEPTH: usize = 4;
@@ -41,6 +43,9 @@ pub struct ScoreParts {
     pub structure: f64,
     /// Whether the room itself explains them: its back wall past a cabinet, its side walls going on.
     pub room: f64,
+    /// What the second look at a cleaned map adds ([`crate::SecondLook`]): whether what is seen among all points is seen among the kept
+    /// ones too, and what else is likely there. 0 where there was one look.
+    pub agreement: f64,
 }
 
 impl Opening {
@@ -66,10 +71,44 @@ impl Opening {
     /// The same up to rounding, without the parts: most candidates are told from exits at a fifth of the cost. `bias` is
     /// [`bias`].
     pub(super) fn rough_probability(&self, bias: f64) -> f64 {
-        let leaf = |tree: &Tree| f64::from(tree.leaf[leaf_of(tree, &self.cues)]);
-        let odds = bias + TREES.iter().map(leaf).sum::<f64>();
-        1.0 / (1.0 + (-odds).exp())
+        probability(self.odds(bias))
     }
+
+    /// Log odds, in the same way.
+    pub(super) fn odds(&self, bias: f64) -> f64 {
+        bias + leaves(&TREES, &self.cues)
+    }
+}
+
+impl SecondLook {
+    /// Log odds of a way out. `bias` is [`second_bias`].
+    fn odds(&self, bias: f64) -> f64 {
+        bias + leaves(&second_forest::TREES, &self.cues)
+    }
+
+    /// Probability of a way out.
+    pub(super) fn rough_probability(&self, bias: f64) -> f64 {
+        probability(self.odds(bias))
+    }
+
+    /// The parts of the log odds.
+    pub(super) fn parts(&self, bias: f64) -> ScoreParts {
+        let parts = self.opening.parts();
+        ScoreParts {
+            agreement: self.odds(bias) - parts.sum() - BASE,
+            ..parts
+        }
+    }
+}
+
+fn probability(odds: f64) -> f64 {
+    1.0 / (1.0 + (-odds).exp())
+}
+
+/// Sum of the leaves that these cues lead to.
+fn leaves(trees: &[Tree], cues: &[f64]) -> f64 {
+    let leaf = |tree: &Tree| f64::from(tree.leaf[leaf_of(tree, cues)]);
+    trees.iter().map(leaf).sum()
 }
 
 /// The index of the part that each cue belongs to, in the order of the cues.
@@ -81,7 +120,7 @@ impl ScoreParts {
     /// Probability of a way out; the logistic function of the parts' sum.
     #[must_use]
     pub fn probability(&self) -> f64 {
-        1.0 / (1.0 + (-self.sum() - BASE).exp())
+        probability(self.sum() + BASE)
     }
 
     fn sum(&self) -> f64 {
@@ -94,8 +133,9 @@ impl ScoreParts {
             wall,
             structure,
             room,
+            agreement,
         } = self;
-        contrast + share + support + depth + width + wall + structure + room
+        contrast + share + support + depth + width + wall + structure + room + agreement
     }
 
     fn part(&mut self, index: u8) -> &mut f64 {
@@ -122,10 +162,19 @@ impl ScoreParts {
 
 /// Log odds before any tree was asked.
 pub(super) fn bias() -> f64 {
-    BASE - TREES.iter().map(|tree| mean(&tree.leaf)).sum::<f64>()
+    BASE - means(&TREES)
 }
 
-fn leaf_of(tree: &Tree, cues: &[f64; CUES]) -> usize {
+/// The same of the second look.
+pub(super) fn second_bias() -> f64 {
+    second_forest::BASE - means(&second_forest::TREES)
+}
+
+fn means(trees: &[Tree]) -> f64 {
+    trees.iter().map(|tree| mean(&tree.leaf)).sum()
+}
+
+fn leaf_of(tree: &Tree, cues: &[f64]) -> usize {
     let mut node = 0;
     for _ in 0..DEPTH {
         let more = cues[usize::from(tree.cue[node])] > f64::from(tree.most[node]);
