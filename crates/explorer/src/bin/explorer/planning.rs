@@ -46,46 +46,23 @@ pub(crate) struct Seconds {
     pub(crate) free_space: f64,
 }
 
-/// What a planner needs: the points at these indices without those that rays contradict, as obstacles,
-/// and proven-free space.
+/// Obstacles and proven-free space. For planners the obstacles are the points at the indices `kept` without those that rays
+/// contradict, for measuring (`None`) all points.
 pub(crate) fn surroundings(
     loaded: &LoadedMap,
-    kept: &[usize],
+    kept: Option<&[usize]>,
     clusters: Option<usize>,
     units_per_meter: f64,
     seed: u64,
 ) -> Result<Surroundings, Failure> {
-    let mut points = at(&loaded.points, kept);
+    let mut points = kept.map_or_else(|| loaded.points.clone(), |kept| at(&loaded.points, kept));
     let clusters = check_clusters(clusters, points.len())?;
     let (free, free_space) = timed(|| prove(loaded, units_per_meter));
     let free = free?;
-    if let Some(free) = &free {
+    if let (Some(_), Some(free)) = (kept, &free) {
         points.retain(|point| !free.contradicts(*point));
     }
     let (obstacles, kmeans, hulls) = hulls(&points, clusters.min(points.len()), seed)?;
-    Ok(Surroundings {
-        obstacles,
-        free,
-        seconds: Seconds {
-            kmeans,
-            hulls,
-            free_space,
-        },
-    })
-}
-
-/// What `explorer obstacles` measures: all points as obstacles, and the same proven-free space.
-pub(crate) fn measured_surroundings(
-    loaded: &LoadedMap,
-    clusters: usize,
-    units_per_meter: f64,
-    seed: u64,
-) -> Result<Surroundings, Failure> {
-    let points = &loaded.points;
-    let clusters = check_clusters(Some(clusters), points.len())?;
-    let (free, free_space) = timed(|| prove(loaded, units_per_meter));
-    let free = free?;
-    let (obstacles, kmeans, hulls) = hulls(points, clusters, seed)?;
     Ok(Surroundings {
         obstacles,
         free,
@@ -129,7 +106,7 @@ fn hulls(
 /// from every point that the rays do not contradict.
 ///
 /// Outliers take part. A true point among them would leave triangles that reach past it and a surface that nothing keeps away
-/// from; a wrong one proves nothing alone, and opens nothing.
+/// from; a wrong one is found out by the other rays, or proves nothing alone.
 fn prove(loaded: &LoadedMap, units_per_meter: f64) -> Result<Option<FreeSpace>, Failure> {
     if !loaded.map.has_observations() {
         return Ok(None);

@@ -116,7 +116,7 @@ fn pipeline(
     let exits = exits?;
     progress.step("building obstacles");
     let kept = &clean.kept_indices;
-    let mut built = surroundings(loaded, kept, arguments.clusters, units, seed)?;
+    let mut built = surroundings(loaded, Some(kept), arguments.clusters, units, seed)?;
     if let Some(free) = &mut built.free {
         // The agent is where it is, so that place is free.
         free.add_ball(position, 1.5 * radius)

@@ -8,7 +8,7 @@ use crate::args::{Obstacles, Output, Vector};
 use crate::failure::Failure;
 use crate::input::{self, LoadedMap};
 use crate::output::{deliver, write_file};
-use crate::planning::{RADIUS_M, Seconds, Surroundings, measured_surroundings};
+use crate::planning::{RADIUS_M, Seconds, Surroundings, surroundings};
 use crate::plot::{Figure, Layer, TopView, color, scene};
 use crate::progress::Progress;
 
@@ -39,7 +39,8 @@ pub(crate) fn run(arguments: &Obstacles, output: &Output) -> Result<(), Failure>
     let loaded = input::load(&arguments.input)?;
     progress.step("building obstacles");
     let units = loaded.units_per_meter(None);
-    let built = measured_surroundings(&loaded, arguments.clusters, units, output.seed)?;
+    let clusters = Some(arguments.clusters);
+    let built = surroundings(&loaded, None, clusters, units, output.seed)?;
     let radius = arguments.radius.unwrap_or(RADIUS_M * units);
     let places = built.places(radius);
     drop(progress);

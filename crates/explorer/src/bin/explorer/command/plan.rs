@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Plan, output: &Output) -> Result<(), Failure> {
     progress.step("building obstacles");
     let units = loaded.units_per_meter(Some(arguments.from));
     let kept = &cleaned.kept_indices;
-    let mut built = surroundings(&loaded, kept, arguments.clusters, units, output.seed)?;
+    let mut built = surroundings(&loaded, Some(kept), arguments.clusters, units, output.seed)?;
     progress.step("planning");
     let proven = match arguments.space {
         Some(choice) => choice == SpaceChoice::ProvenFree,
