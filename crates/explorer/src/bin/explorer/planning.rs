@@ -106,7 +106,7 @@ fn hulls(
 /// from every point that the rays do not contradict.
 ///
 /// Outliers take part. A true point among them would leave triangles that reach past it and a surface that nothing keeps away
-/// from; a wrong one is found out by the other rays, or proves nothing alone.
+/// from; a wrong one proves nothing alone, and opens nothing.
 fn prove(loaded: &LoadedMap, units_per_meter: f64) -> Result<Option<FreeSpace>, Failure> {
     if !loaded.map.has_observations() {
         return Ok(None);
