@@ -16,6 +16,8 @@ const LONGEST: f64 = 1.0;
 pub(crate) struct Accuracy {
     /// How much nearer to something solid than its radius the ball came, metres; negative where it kept away.
     deficits: Vec<f64>,
+    /// How many of them pass through something solid.
+    crossing: usize,
     tried: usize,
     /// Volume in which the motions started, cubic metres.
     volume: f64,
@@ -44,6 +46,7 @@ impl Accuracy {
             if free(a, b) {
                 let clearance = world.segment_clearance(a, b);
                 accuracy.deficits.push(radius - clearance);
+                accuracy.crossing += usize::from(clearance <= 0.0);
             }
         }
         accuracy
@@ -51,6 +54,7 @@ impl Accuracy {
 
     pub(crate) fn add(&mut self, other: Self) {
         self.deficits.extend(other.deficits);
+        self.crossing += other.crossing;
         self.tried += other.tried;
         self.volume += other.volume;
     }
@@ -75,8 +79,10 @@ impl fmt::Display for Accuracy {
             [0.0, 1e-4, 1e-3, 1e-2].map(|share| self.exceeded_by(share));
         write!(
             out,
-            "motions free in {:.1} m³, nearer than the radius by {worst:.3} m at worst, {ten_thousandth:.3} / {thousandth:.3} / {hundredth:.3} m in one of 10,000 / 1,000 / 100",
-            self.volume()
+            "motions free in {:.1} m³, {} of {} through something solid, nearer than the radius by {worst:.3} m at worst, {ten_thousandth:.3} / {thousandth:.3} / {hundredth:.3} m in one of 10,000 / 1,000 / 100",
+            self.volume(),
+            self.crossing,
+            self.deficits.len()
         )
     }
 }

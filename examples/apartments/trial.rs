@@ -125,6 +125,8 @@ pub(crate) fn queries(
         patch_half_angle: 0.0,
         max_triangle_angle: 0.0,
         hit_log_odds: 0.0,
+        // True lines contradict no point.
+        contradiction_log_odds: f64::INFINITY,
         clearance: 0.0,
         ..FreeSpaceConfig::default()
     };

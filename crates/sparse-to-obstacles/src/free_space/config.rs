@@ -53,7 +53,8 @@ pub struct FreeSpaceConfig {
     /// Default 32: eighty more crossing rays than its hits need. With 8, rays that graze thin furniture and
     /// walls took true points off them: in thirty simulated apartments 10 of 1,329 planned paths crossed
     /// something solid, with 32 it were 2 of 1,311. See
-    /// [`FreeSpace::contradicts`](crate::FreeSpace::contradicts).
+    /// [`FreeSpace::contradicts`](crate::FreeSpace::contradicts). Rays to a point whose voxel has as little evidence prove nothing
+    /// either; infinity trusts all points as far as this goes.
     pub contradiction_log_odds: f64,
     /// Most voxels that the grid may hold; each costs 37 bytes. At least 1. Default 8 million (300 MB).
     pub max_voxels: usize,

@@ -12,7 +12,7 @@ pub(super) type PointId = u32;
 
 const NOBODY: KeyframeId = 0;
 /// No point.
-pub(super) const NO_POINT: PointId = 0;
+const NO_POINT: PointId = 0;
 const PRESENCE: KeyframeId = KeyframeId::MAX;
 
 /// Evidence about one voxel.
@@ -31,13 +31,11 @@ pub(super) struct Evidence {
 impl Evidence {
     /// Counts a crossing ray, once however often it is reported in a row.
     #[inline]
-    pub(super) fn cross(&mut self, keyframe: KeyframeId, point: PointId, ray: u32) {
-        if self.last_ray == ray {
-            return;
+    pub(super) fn cross(&mut self, ray: u32) {
+        if self.last_ray != ray {
+            self.last_ray = ray;
+            self.crossed = self.crossed.saturating_add(1);
         }
-        self.last_ray = ray;
-        self.crossed = self.crossed.saturating_add(1);
-        self.witness(keyframe, [point, NO_POINT, NO_POINT]);
     }
 
     /// Remembers a keyframe that saw through, if these points are where the map has them.
@@ -72,7 +70,18 @@ impl Evidence {
         // together they open a window in whatever stands before it.
         let corroborated = last == 0 || self.shared == [NO_POINT; 3];
         let seen = corroborated && self.witnesses[last] != NOBODY;
-        seen && self.log_odds(config) <= config.free_log_odds
+        seen && !self.is_occupied(config)
+    }
+
+    /// Did more rays end here than pass?
+    #[inline]
+    pub(super) fn is_occupied(&self, config: &FreeSpaceConfig) -> bool {
+        self.log_odds(config) > config.free_log_odds
+    }
+
+    /// Did so many more pass than end that there can be no point here?
+    pub(super) fn is_contradicted(&self, config: &FreeSpaceConfig) -> bool {
+        self.log_odds(config) <= -config.contradiction_log_odds
     }
 
     /// Log-odds of being occupied.
@@ -132,18 +141,29 @@ pub(super) struct Sighting {
     pub(super) point: PointId,
 }
 
-/// The rays of each keyframe, in their order.
+impl Sighting {
+    /// Its point, as the corners of a triangle are given.
+    pub(super) fn alone(&self) -> [PointId; 3] {
+        [self.point, NO_POINT, NO_POINT]
+    }
+}
+
+/// The rays of each keyframe, by their direction.
 pub(super) fn by_keyframe(
     rays: &[Ray],
     keyframes: &[u32],
     points: &[PointId],
-) -> impl Iterator<Item = (KeyframeId, Vec<Sighting>)> {
+) -> Vec<(KeyframeId, Vec<Sighting>)> {
     let mut groups: BTreeMap<KeyframeId, Vec<Sighting>> = BTreeMap::new();
     for ((&ray, &keyframe), &point) in rays.iter().zip(keyframes).zip(points) {
         let group = groups.entry(keyframe as KeyframeId).or_default();
         group.push(Sighting { ray, point });
     }
-    groups.into_iter()
+    // Rays in similar directions cross the same voxels while they are at hand.
+    for sightings in groups.values_mut() {
+        sightings.sort_by_cached_key(|sighting| sighting.ray.sector());
+    }
+    groups.into_iter().collect()
 }
 
 /// Most keyframes that can be told apart.

@@ -12,6 +12,8 @@ mod panorama;
 mod query;
 mod ray;
 mod surface;
+mod traverse;
+mod trust;
 
 pub use config::FreeSpaceConfig;
 pub use error::FreeSpaceError;
@@ -22,9 +24,10 @@ use crate::point::{PointLike, finite_points, is_finite};
 use crate::vector::{Vec3, max, min};
 use carve::Carver;
 use distance_field::DistanceField;
-use evidence::{Evidence, Known};
+use evidence::{Evidence, KeyframeId, Known, Sighting};
 use grid::{Cell, Grid};
 use surface::Surface;
+use trust::Trust;
 
 /// Proven free space: voxels that rays from enough keyframes have crossed, and the surface points that
 /// a motion must stay away from.
@@ -32,7 +35,8 @@ use surface::Surface;
 /// What no ray has crossed is not free, whether or not there are points: blank walls, windows and all
 /// that the camera never looked at. Voxels are cubes of [`FreeSpaceConfig::resolution`] whose corners are
 /// multiples of it. A crossed voxel counts as free as a whole, and points and keyframes are noisy: a surface without
-/// points that rays graze may be entered by up to a voxel, which is the accuracy of the proof. Nothing hangs on a single point.
+/// points that rays graze may be entered by up to a voxel, which is the accuracy of the proof. Nothing hangs on a single point,
+/// and a point proves nothing that the other rays contradict, or most of whose own rays pass through something solid.
 #[derive(Clone, Debug)]
 pub struct FreeSpace {
     config: FreeSpaceConfig,
@@ -52,7 +56,7 @@ impl FreeSpace {
     /// Carves the space along the rays. `surface` are the points that motions keep
     /// [`FreeSpaceConfig::clearance`] from: pass the cleaned map.
     ///
-    /// Cost: O(voxels crossed) for the rays, then O(voxels of the grid). No rays give a space in which
+    /// Cost: O(voxels crossed) for the rays, which are followed three times, then O(voxels of the grid). No rays give a space in which
     /// nothing is free.
     ///
     /// # Errors
@@ -101,7 +105,8 @@ impl FreeSpace {
 
     /// Adds rays and surface points of a map that has grown. Rays with the same origin belong to the
     /// same keyframe, also across calls, but the space between rays is carved only among those of one
-    /// call: pass all rays of a keyframe at once. On an error nothing is added.
+    /// call: pass all rays of a keyframe at once. A point is judged by all rays so far when it is added, not again later. On an
+    /// error nothing is added.
     ///
     /// # Errors
     /// As [`from_rays`](Self::from_rays).
@@ -126,20 +131,31 @@ impl FreeSpace {
         self.reserve(rays.iter().flat_map(|ray| [ray.origin, config.reach(ray)]))?;
         self.keyframes = keyframes;
         let points = self.points.number(rays.iter().map(|ray| ray.end));
-        let mut carver = Carver::new(&config, &self.grid, &mut self.evidence, &mut self.rays);
-        for (keyframe, mut sightings) in evidence::by_keyframe(&rays, &ids, &points) {
-            // Rays in similar directions cross the same voxels while they are at hand.
-            sightings.sort_by_cached_key(|sighting| sighting.ray.sector());
-            for sighting in &sightings {
-                carver.carve(sighting, keyframe);
-            }
-            carver.carve_between(&sightings, keyframe);
-        }
+        self.carve(&evidence::by_keyframe(&rays, &ids, &points));
         let presence = &self.presence;
         let stands = |point: &Vec3| !presence.iter().any(|&ball| contains(ball, *point));
         self.surface.extend(surface.into_iter().filter(stands));
         self.refresh();
         Ok(())
+    }
+
+    /// Counts all rays before any proves something: together they tell which points are wrong.
+    fn carve(&mut self, keyframes: &[(KeyframeId, Vec<Sighting>)]) {
+        let mut carver = Carver {
+            config: &self.config,
+            grid: &self.grid,
+            evidence: &mut self.evidence,
+            rays: &mut self.rays,
+        };
+        let sightings = || keyframes.iter().flat_map(|(_, sightings)| sightings);
+        for sighting in sightings() {
+            carver.count(sighting);
+        }
+        let (points, evidence) = (self.points.len(), &*carver.evidence);
+        let trust = Trust::new(sightings(), points, &self.grid, evidence, &self.config);
+        for (keyframe, sightings) in keyframes {
+            carver.prove(sightings, *keyframe, &trust);
+        }
     }
 
     /// Marks a ball as free because the drone itself is, or was, there: the start bubble of a mission.

@@ -35,7 +35,7 @@ fn bundle(end: Vec3) -> Vec<Ray> {
 fn a_ray_counts_once_in_a_voxel() {
     let mut voxel = Evidence::default();
     for _ in 0..3 {
-        voxel.cross(1, 1, 7);
+        voxel.cross(7);
     }
     assert_eq!(voxel.log_odds(&config()), -0.4);
 }

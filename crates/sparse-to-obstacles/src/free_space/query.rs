@@ -50,7 +50,7 @@ impl FreeSpace {
             VoxelState::Occupied
         } else if self.free[index] {
             VoxelState::Free
-        } else if self.evidence[index].log_odds(&self.config) > self.config.free_log_odds {
+        } else if self.evidence[index].is_occupied(&self.config) {
             VoxelState::Occupied
         } else {
             VoxelState::Unknown
@@ -66,9 +66,7 @@ impl FreeSpace {
             .then(|| self.grid.index_of(point))
             .flatten();
         index.is_some_and(|index| {
-            let config = &self.config;
-            self.free[index]
-                && self.evidence[index].log_odds(config) <= -config.contradiction_log_odds
+            self.free[index] && self.evidence[index].is_contradicted(&self.config)
         })
     }
 
