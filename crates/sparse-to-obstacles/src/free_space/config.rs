@@ -54,8 +54,12 @@ pub struct FreeSpaceConfig {
     /// walls took true points off them: in thirty simulated apartments 10 of 1,329 planned paths crossed
     /// something solid, with 32 it were 2 of 1,311. See
     /// [`FreeSpace::contradicts`](crate::FreeSpace::contradicts). Rays to a point whose voxel has as little evidence prove nothing
-    /// either; infinity trusts all points as far as this goes.
+    /// either, unless all points are trusted.
     pub contradiction_log_odds: f64,
+    /// A point proves nothing if more than this share of its own rays pass through something solid: its keyframes cannot have seen
+    /// it there. 0 to 1. Default 0.5. 1 trusts all points, contradicted ones too: for maps that drift, in which a wall that
+    /// is seen again from elsewhere stands in the way of its own points.
+    pub max_blocked_share: f64,
     /// Most voxels that the grid may hold; each costs 37 bytes. At least 1. Default 8 million (300 MB).
     pub max_voxels: usize,
 }
@@ -75,6 +79,7 @@ impl Default for FreeSpaceConfig {
             miss_log_odds: 0.4,
             free_log_odds: 0.0,
             contradiction_log_odds: 32.0,
+            max_blocked_share: 0.5,
             max_voxels: 8_000_000,
         }
     }
@@ -133,6 +138,9 @@ impl FreeSpaceConfig {
         check("free_log_odds", value, value.is_finite(), "finite")?;
         let value = self.contradiction_log_odds;
         check("contradiction_log_odds", value, value >= 0.0, "at least 0")?;
+        let value = self.max_blocked_share;
+        let ok = (0.0..=1.0).contains(&value);
+        check("max_blocked_share", value, ok, "from 0 to 1")?;
         let ok = self.max_voxels > 0;
         check("max_voxels", self.max_voxels as f64, ok, "at least 1")
     }

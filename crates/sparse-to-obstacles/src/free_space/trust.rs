@@ -1,8 +1,9 @@
 //! Which points are wrong by what all rays say together, so that rays to them prove nothing.
 //!
 //! A point is wrong when it is contradicted (many more rays crossed its voxel than ended there,
-//! [`FreeSpaceConfig::contradiction_log_odds`]), or when most of its own rays pass through something solid: through [`SOLID`]
-//! voxels in which more rays ended than passed. The keyframes cannot have seen it there.
+//! [`FreeSpaceConfig::contradiction_log_odds`]), or when too large a share of its own rays
+//! ([`FreeSpaceConfig::max_blocked_share`]) pass through something solid: through [`SOLID`] voxels in which more rays ended than
+//! passed. The keyframes cannot have seen it there.
 //!
 //! Of the points that are too far off to be true (as wrong matches are that open walls) two thirds of the rays pass through something
 //! solid in simulated apartments, of the others one in twenty-three.
@@ -19,8 +20,9 @@ const SOLID: usize = 2;
 /// What is thought of the points of a call.
 #[derive(Debug)]
 pub(super) struct Trust {
-    /// By the number of the point.
+    /// By the number of the point; none when all are trusted.
     views: Vec<Views>,
+    max_blocked_share: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,6 +42,14 @@ impl Trust {
         evidence: &[Evidence],
         config: &FreeSpaceConfig,
     ) -> Self {
+        let max_blocked_share = config.max_blocked_share;
+        if max_blocked_share >= 1.0 {
+            let views = Vec::new();
+            return Trust {
+                views,
+                max_blocked_share,
+            };
+        }
         let mut views = vec![Views::default(); points + 1];
         for sighting in sightings {
             let own = grid.index_of(sighting.ray.end);
@@ -59,12 +69,17 @@ impl Trust {
                 view.blocked += u32::from(visit_line(grid, segment, &mut blocked).is_break());
             }
         }
-        Trust { views }
+        Trust {
+            views,
+            max_blocked_share,
+        }
     }
 
     pub(super) fn is_wrong(&self, point: PointId) -> bool {
-        let view = &self.views[point as usize];
-        view.contradicted || 2 * view.blocked > view.rays
+        self.views.get(point as usize).is_some_and(|view| {
+            view.contradicted
+                || f64::from(view.blocked) > self.max_blocked_share * f64::from(view.rays)
+        })
     }
 }
 
@@ -106,6 +121,24 @@ mod tests {
         (0..10 * voxels)
             .map(|i| (2, [2.05 + 0.1 * (i % voxels) as f64, 0.05, 0.05]))
             .collect()
+    }
+
+    #[test]
+    fn a_share_of_one_trusts_all_points() {
+        let behind = [3.05, 0.05, 0.05];
+        let sightings = [two_points(), wall(2)].concat();
+        let rays = sightings.iter().map(|&(keyframe, end)| Ray {
+            origin: [0.05, 0.05, 0.02 * f64::from(keyframe)],
+            end,
+        });
+        let config = FreeSpaceConfig {
+            max_triangle_angle: 0.0,
+            clearance: 0.0,
+            max_blocked_share: 1.0,
+            ..FreeSpaceConfig::default()
+        };
+        let space = FreeSpace::from_rays(rays, &NOTHING, &config).unwrap();
+        assert_eq!(space.state(behind), VoxelState::Free);
     }
 
     #[test]
