@@ -13,6 +13,10 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 /// Moves shorter than this say little: the drone's and the map's noise are about a centimetre.
 const SHORTEST_USABLE_M: f64 = 0.15;
 
+/// No toy drone moves further at one command; squares of far longer ones overflow, and the eigenvalues of what is not finite are
+/// sought without end.
+const LONGEST_USABLE_M: f64 = 1000.0;
+
 /// Up in the first camera's frame: a camera that looks level has y down.
 const CAMERA_UP: Vector3<f64> = Vector3::new(0.0, -1.0, 0.0);
 
@@ -37,15 +41,15 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Adds one finished move: `commanded` in metres, body frame with z up; `measured` in map units. Moves that are too
-    /// short or not finite are left out.
+    /// Adds one finished move: `commanded` in metres, body frame with z up; `measured` in map units. Moves shorter than 0.15 m, longer
+    /// than a kilometre or not finite are left out.
     pub fn add(&mut self, commanded: Vector3<f64>, measured: Vector3<f64>) {
         let meters = commanded.norm();
         let units = measured.norm();
-        if !(meters.is_finite() && units.is_finite())
-            || meters < SHORTEST_USABLE_M
-            || units <= f64::EPSILON
-        {
+        let is_usable = (SHORTEST_USABLE_M..=LONGEST_USABLE_M).contains(&meters)
+            && units > f64::EPSILON
+            && units.is_finite();
+        if !is_usable {
             return;
         }
         self.ratios.push(meters / units);
@@ -159,6 +163,9 @@ mod tests {
             Vector3::new(f64::NAN, 0.0, 0.0),
             Vector3::new(1.0, 0.0, 0.0),
         );
+        for _ in 0..4 {
+            calibration.add(Vector3::new(1.3e154, 0.0, 0.0), Vector3::x());
+        }
         assert!(calibration.is_empty());
         assert_eq!(calibration.meters_per_unit(), None);
         assert!((calibration.up() - CAMERA_UP).norm() < 1e-12);
