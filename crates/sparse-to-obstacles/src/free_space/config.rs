@@ -34,7 +34,7 @@ pub struct FreeSpaceConfig {
     /// Between neighbouring points of a keyframe the space is taken to be seen through as well, where the
     /// angles between them are at most this, in radians. Such triangles count as witnesses, not against
     /// hits. 0 carves rays only. 0 to 1. Default 0.3 (17 degrees): from 0.1 to 0.3 simulated apartments gain a third of proven
-    /// space, and motions come no nearer to true walls.
+    /// space, and in 1 to 3 motions come no nearer to true walls; in one of twenty others triangles above 0.2 opened the end of a wall.
     pub max_triangle_angle: f64,
     /// Largest ratio of the depths of such points: a jump is the edge of something. At least 1. Default
     /// 1.25: at 1.5 a triangle from the last points of a wall to what lies behind its end took the end for seen

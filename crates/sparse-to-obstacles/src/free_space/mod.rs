@@ -56,7 +56,7 @@ impl FreeSpace {
     /// Carves the space along the rays. `surface` are the points that motions keep
     /// [`FreeSpaceConfig::clearance`] from: pass the cleaned map.
     ///
-    /// Cost: O(voxels crossed) for the rays, which are followed three times, then O(voxels of the grid). No rays give a space in which
+    /// Cost: O(voxels crossed) for the rays, which are followed three times (twice where all points are trusted), then O(voxels of the grid). No rays give a space in which
     /// nothing is free.
     ///
     /// # Errors

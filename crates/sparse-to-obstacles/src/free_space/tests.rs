@@ -334,6 +334,14 @@ fn settings_out_of_range_are_refused() {
             miss_log_odds: 0.0,
             ..config()
         },
+        FreeSpaceConfig {
+            max_blocked_share: f64::NAN,
+            ..config()
+        },
+        FreeSpaceConfig {
+            max_blocked_share: 1.5,
+            ..config()
+        },
     ] {
         let refused = FreeSpace::from_rays([good], &NOTHING, &wrong).err();
         assert!(matches!(refused, Some(FreeSpaceError::OutOfRange { .. })));
