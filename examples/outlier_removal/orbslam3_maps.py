@@ -31,11 +31,10 @@ HELD = [
     "kitchen rgbd 900 0 260 1 back", "kitchen rgbd 1100 0 170 1", "kitchen rgbd 1400 0 300 2", "kitchen rgbd 1800 60 300 1",
     "fr1 rgbd 1000 60 250 1", "fr1 rgbd 1300 0 250 2", "fr1 rgbd 1800 0 220 1 back", "fr1 rgbd 2200 30 230 1",
 ]
-# Camera matrix, distortion, units of depth a metre.
+# Focal lengths and centre, units of depth a metre.
 SCENES = {
-    "kitchen": ("seven_scenes_redkitchen_part1", (585.0, 585.0, 320.0, 240.0), (0.0,) * 5, 1000.0),
-    "fr1": ("tum_fr1_rpy_part1", (517.306408, 516.469215, 318.64304, 255.313989),
-            (0.262383, -0.953104, -0.005358, 0.002628, 1.163314), 5000.0),
+    "kitchen": ("seven_scenes_redkitchen_part1", (585.0, 585.0, 320.0, 240.0), 1000.0),
+    "fr1": ("tum_fr1_rpy_part1", (517.306408, 516.469215, 318.64304, 255.313989), 5000.0),
 }
 SLOWER = 4.0
 
@@ -70,7 +69,7 @@ def settings(scene, sensor, features, shared, out):
     text = (shared / "orbslam3" / ("7s.yaml" if scene == "kitchen" else "tum1.yaml")).read_text()
     lines = [f"ORBextractor.nFeatures: {features}" if "nFeatures" in line else line for line in text.splitlines()]
     if sensor == "rgbd":
-        lines += ["Stereo.ThDepth: 40.0", "Stereo.b: 0.07732", f"RGBD.DepthMapFactor: {SCENES[scene][3]}"]
+        lines += ["Stereo.ThDepth: 40.0", "Stereo.b: 0.07732", f"RGBD.DepthMapFactor: {SCENES[scene][2]}"]
     (out / "settings.yaml").write_text("\n".join(lines) + "\n")
 
 
@@ -104,7 +103,7 @@ def make(name, shared, out):
         return
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
-    folder, camera, _, unit = SCENES[scene]
+    folder, camera, unit = SCENES[scene]
     image_list(scene, shared / "data" / folder, (int(first), int(last), int(stride), bool(backwards)), work)
     settings(scene, sensor, features, shared, work)
     programs = shared / "orbslam3"
