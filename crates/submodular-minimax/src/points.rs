@@ -63,6 +63,17 @@ pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     x * x + y * y + z * z
 }
 
+/// The middle of the points by their medians, and the median distance from there.
+pub(crate) fn extent(points: &[[f64; 3]]) -> ([f64; 3], f64) {
+    let along = |axis: usize| points.iter().map(|p| p[axis]).collect::<Vec<_>>();
+    let middle = [0, 1, 2].map(|axis| median(&mut along(axis)));
+    let away = |&point: &[f64; 3]| squared_distance(point, middle).sqrt();
+    (
+        middle,
+        median(&mut points.iter().map(away).collect::<Vec<_>>()),
+    )
+}
+
 /// The median, the mean of the middle two for an even count; 0 for an empty slice. Reorders.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() {

@@ -29,8 +29,8 @@ pub struct OutlierConfig {
     pub min_component: usize,
     /// Adapts λ, reach, support and component size to how dirty and how large the cloud is: a strict
     /// first pass tells the dirt. λ above then holds for a quarter of dirt and more, up to 10,000 points,
-    /// support and component size for 12 % and less; the reach follows from the distances between the
-    /// suspects, from 6/7 to double the value above. Off in the studied readings.
+    /// support and component size for 12 % and less and 5,000 points and more; the reach follows from the distances between
+    /// the suspects, from 6/7 to double the value above, or down to half of it in small clouds. Off in the studied readings.
     pub adaptive: bool,
     /// What is made of the observations in [`Reading::Rays`] and [`Reading::Ranged`].
     pub rays: RayConfig,

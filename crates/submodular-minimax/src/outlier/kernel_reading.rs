@@ -12,7 +12,7 @@ use super::problem::{Problem, Score};
 use super::sight::Sight;
 use crate::disjoint_sets::DisjointSets;
 use crate::neighbours::{Neighbour, NeighbourGraph, RangeTree};
-use crate::points::{Cloud, median};
+use crate::points::{Cloud, extent, median};
 
 /// The threshold of the strict pass.
 const STRICT: f64 = 0.5;
@@ -20,6 +20,9 @@ const STRICT: f64 = 0.5;
 /// points of thin texture, which lie closer together than outliers do.
 const SHORTEST: f64 = 6.0 / 7.0;
 const LONGEST: f64 = 2.0;
+/// How long links may be in a small cloud, in R / n^(1/3) and in reaches; chosen on apartments and rooms of seeds 41 to 56.
+const MOST_APART: f64 = 2.2;
+const LEAST_PART: f64 = 0.6;
 /// Violating rays that count at most.
 const MOST_VIOLATIONS: u32 = 5;
 
@@ -40,11 +43,12 @@ pub(super) fn problem(
         support: config.support,
         min_component: config.min_component as f64,
     };
-    graph.truncate(settings.reach * settings.reach);
     if config.adaptive {
-        settings = settings.adapted(&graph, config.reading, cloud);
+        settings.reach = shortened(settings.reach, cloud);
         graph.truncate(settings.reach * settings.reach);
+        settings = settings.adapted(&graph, config.reading, cloud);
     }
+    graph.truncate(settings.reach * settings.reach);
     let score = settings.score(&graph, config.reading);
     let mut threshold = vec![settings.threshold; n];
     if let Some(sight) = sight.filter(|_| config.reading == Reading::Rays) {
@@ -108,9 +112,9 @@ impl Settings {
     /// Links are as long as the suspects' distances allow, see [`reach_among`]. Up to 12 % every point
     /// counts as an inlier sooner; up to 26 % representatives need more and more support. From 10,000 to
     /// 50,000 points the threshold falls by a quarter, since larger clouds are denser at their core and
-    /// not at their fringe. Below 5,000 points true patches are as small as clumps of outliers, and
-    /// smaller components may represent. The numbers were chosen on generated apartments of other seeds
-    /// than those that docs/measurements.md reports.
+    /// not at their fringe. Below 5,000 points true patches are as small as clumps of outliers: the nearest point says more
+    /// than how many there are, so smaller components may represent, less support is enough, and the threshold rises. The
+    /// numbers were chosen on generated clouds of other seeds than those that docs/measurements.md reports.
     fn adapted(self, graph: &NeighbourGraph, reading: Reading, cloud: &Cloud) -> Self {
         let n = graph.len();
         let score = self.score(graph, reading);
@@ -131,13 +135,13 @@ impl Settings {
     /// What [`Settings::adapted`] says, from the number of points, the share of suspects and the reach among these.
     fn gated(self, n: usize, suspects: f64, reach: Option<f64>) -> Self {
         let dirt = ((suspects - 0.12) / 0.14).clamp(0.0, 1.0);
-        let small = (n as f64 / 5e3).clamp(0.4, 1.0);
+        let small = (n as f64 / 5e3).clamp(0.1, 1.0);
         let size = ((n as f64 / 1e4).ln() / 5.0_f64.ln()).clamp(0.0, 1.0);
         let reach = reach.unwrap_or(self.reach);
         Self {
             reach: reach.clamp(SHORTEST * self.reach, LONGEST * self.reach),
-            threshold: self.threshold * (2.0 + dirt) / 3.0 * (1.0 - size / 4.0),
-            support: self.support * (1.0 + dirt),
+            threshold: self.threshold * (2.0 + dirt) / 3.0 * (1.0 - size / 4.0) / small.powf(0.2),
+            support: self.support * (1.0 + dirt) * small.sqrt(),
             min_component: self.min_component * (1.0 + dirt / 5.0) * small,
         }
     }
@@ -160,6 +164,16 @@ impl Settings {
         }
         Score::Kernel { reach, weight }
     }
+}
+
+/// The reach, unless it is as long as outliers are apart.
+///
+/// Surfaces get sparser with the root of the number of points, what is spread in space with the cube root only: in small clouds
+/// links of some spacings reach from outlier to outlier. They are no longer than [`MOST_APART`] times R / n^(1/3), with R the median
+/// distance from the middle, and no shorter than [`LEAST_PART`] of the reach.
+fn shortened(reach: f64, cloud: &Cloud) -> f64 {
+    let apart = extent(&cloud.points).1 / (cloud.len() as f64).cbrt();
+    reach.min((MOST_APART * apart).max(LEAST_PART * reach))
 }
 
 /// How long links may be so that half a suspect is to be expected within reach of a suspect.
@@ -204,6 +218,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn links_reach_2_2_times_as_far_as_points_spread_in_space_are_apart_or_six_tenths_as_far_as_told()
+     {
+        // A thousand points at distance 1 from the middle: R / n^(1/3) is a tenth.
+        let side = |i: usize| [1.0, -1.0][i % 2];
+        let at = |i: usize| [0, 1, 2].map(|axis| if i / 2 % 3 == axis { side(i) } else { 0.0 });
+        let cloud = Cloud::new(&(0..1_000).map(at).collect::<Vec<_>>())
+            .ok()
+            .unwrap();
+        for (told, wanted) in [(0.1, 0.1), (0.22, 0.22), (0.3, 0.22), (0.9, 0.54)] {
+            let found = shortened(told / cloud.unit, &cloud) * cloud.unit;
+            assert!((found - wanted).abs() < 1e-12, "{found} for {told}");
+        }
+    }
+
+    #[test]
     fn gates_open_with_dirt_and_size() {
         let base = Settings {
             reach: 7.0,
@@ -228,7 +257,23 @@ mod tests {
         check(10_000, 0.40, Some(1.0), [6.0, 0.3, 4.0, 18.0]);
         check(50_000, 0.05, Some(99.0), [14.0, 0.15, 2.0, 15.0]);
         check(1_000_000, 0.26, None, [7.0, 0.225, 4.0, 18.0]);
-        check(2_500, 0.0, None, [7.0, 0.2, 2.0, 7.5]);
-        check(100, 0.0, None, [7.0, 0.2, 2.0, 6.0]);
+        check(
+            2_500,
+            0.0,
+            None,
+            [7.0, 0.2 * 2.0_f64.powf(0.2), 2.0_f64.sqrt(), 7.5],
+        );
+        check(
+            500,
+            0.0,
+            None,
+            [7.0, 0.2 * 10.0_f64.powf(0.2), 0.4_f64.sqrt(), 1.5],
+        );
+        check(
+            100,
+            0.0,
+            None,
+            [7.0, 0.2 * 10.0_f64.powf(0.2), 0.4_f64.sqrt(), 1.5],
+        );
     }
 }

@@ -9,7 +9,7 @@
 //! Cost: constant beyond 4,096 points, 300 hypotheses times 768 points a plane, at most 24 planes.
 
 use super::outline::Outline;
-use crate::points::{median, squared_distance};
+use crate::points::{extent, median};
 use std::cmp::Ordering;
 
 /// Half the thickness of the slab around a hypothesis, in median distances of the points from their middle.
@@ -120,17 +120,6 @@ impl Planes {
             left = others;
         }
     }
-}
-
-/// The middle of the points by their medians, and the median distance from there.
-fn extent(points: &[[f64; 3]]) -> ([f64; 3], f64) {
-    let along = |axis: usize| points.iter().map(|p| p[axis]).collect::<Vec<_>>();
-    let middle = [0, 1, 2].map(|axis| median(&mut along(axis)));
-    let away = |&point: &[f64; 3]| squared_distance(point, middle).sqrt();
-    (
-        middle,
-        median(&mut points.iter().map(away).collect::<Vec<_>>()),
-    )
 }
 
 /// The bits of the coordinates in turn (Morton's code): points with near codes lie near each other.
