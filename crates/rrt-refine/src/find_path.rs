@@ -1,12 +1,14 @@
 //! The whole way from a question to a short path: RRT-Connect pulled taut, then searches for anything shorter.
 //!
 //! Input: a query and a motion check. Output: the refined path, the plan it came from and what was spent.
-//! Method: 1. RRT-Connect; 2. [`taut`](crate::refine::taut()): the shortest path over its vertices (the paper's refinement), corners cut,
-//! again; 3. a planner that stops at its first path may take the longer way round an obstacle, and no refiner changes sides. So plan
-//! again for a path shorter by `min_gain`, of length c at most: all its points lie in the ellipsoid { x : |x − start| + |x − goal| ≤ c },
-//! so no motion may leave it and samples come from the box around it; 4. until a search finds nothing, or `attempts` are made. A search may
-//! take as many samples as there is to gain: a number in proportion to what the path is longer than the straight line.
-//! Cost: a search and a refinement an attempt, the later ones in less and less space; one check where the straight motion is free.
+//! Method: 1. RRT-Connect; 2. one round of [`taut`](crate::refine::taut()): the shortest path over its vertices (the paper's refinement) and
+//! corners cut; 3. a planner that stops at its first path may take the longer way round an obstacle, and no refiner changes sides. So plan
+//! again for a path of length c at most: all its points lie in the ellipsoid { x : |x − start| + |x − goal| ≤ c }, so no motion may leave
+//! it and samples come from the box around it. c lies far below the length at first, near the straight line's: in little space a
+//! much shorter way is found by few samples, if there is one; 4. when that finds nothing, ask for `min_gain` alone, with half the samples, until a search finds nothing, or
+//! `attempts` are made. A search takes as many samples as there is to gain: a number in proportion to the square of what the path is
+//! longer than the straight line; 5. the best path is pulled taut.
+//! Cost: a search and a round of refinement an attempt, the later ones in less and less space; one check where the straight motion is free.
 //!
 //! References: Kuffner, LaValle 2000 (RRT-Connect); the ellipsoid is that of Gammell, Srinivasa, Barfoot, "Informed RRT*", IROS 2014.
 
@@ -26,12 +28,14 @@ pub struct FindPathConfig {
     pub rrt: RrtConfig,
     /// Parameters of the refiner.
     pub taut: TautConfig,
-    /// How often to plan; at least 1. Default 6. With 1 the first path found is refined and returned.
+    /// How often to plan; at least 1. Default 12. With 1 the first path found is refined and returned.
     pub attempts: usize,
     /// Most samples of each search for something shorter where the path is twice as long as the straight line, 0 or more; in proportion
-    /// to the excess over that line where it is more or less, and [`RrtConfig::max_iterations`] at most. Default 5,000, which is 250
-    /// for a path 5 % longer than the straight line.
+    /// to the square of the excess over that line where it is more or less, and [`RrtConfig::max_iterations`] at most. Default 9,000, which is 90
+    /// for a path 10 % longer than the straight line.
     pub further_iterations: usize,
+    /// A further path is first to be shorter by this share of the excess over the straight line, then by `min_gain` alone; 0 to below 1. Default 0.7.
+    pub first_gain: f64,
     /// A further path must be shorter by this share; 0 to below 1. Default 0.03.
     pub min_gain: f64,
 }
@@ -41,8 +45,9 @@ impl Default for FindPathConfig {
         Self {
             rrt: RrtConfig::default(),
             taut: TautConfig::default(),
-            attempts: 6,
-            further_iterations: 5_000,
+            attempts: 12,
+            further_iterations: 9_000,
+            first_gain: 0.7,
             min_gain: 0.03,
         }
     }
@@ -60,13 +65,17 @@ impl FindPathConfig {
             let value = self.min_gain;
             return Err(ConfigError::MinGain { value }.into());
         }
+        if !(0.0..1.0).contains(&self.first_gain) {
+            let value = self.first_gain;
+            return Err(ConfigError::FirstGain { value }.into());
+        }
         Ok(self.taut.validate()?)
     }
 
     /// Samples of a search for something shorter than a path that is longer than the straight line by this share of it.
     fn samples_for(&self, excess: f64) -> usize {
         // Saturates where the excess is not a number, or too large to count.
-        let samples = (self.further_iterations as f64 * excess).ceil() as usize;
+        let samples = (self.further_iterations as f64 * excess * excess).ceil() as usize;
         samples.min(self.rrt.max_iterations)
     }
 }
@@ -114,35 +123,64 @@ pub fn find_path<const D: usize>(
 ) -> Result<FoundPath<D>, PlanError> {
     config.validate()?;
     let plan = rrt_connect(query, motion_is_free, &config.rrt, rng)?;
-    let mut best = refined(plan, motion_is_free, &config.taut)?;
+    // Which of the paths is the shortest shows after one round.
+    let once = TautConfig {
+        max_rounds: config.taut.max_rounds.min(1),
+        ..config.taut
+    };
+    let mut best = refined(plan, motion_is_free, &once)?;
+    let mut first_gain = config.first_gain;
     while let Some(path) = &best.path
         && best.attempts < config.attempts
     {
-        let Some(within) = Shorter::new(query, path.length() * (1.0 - config.min_gain)) else {
+        let gain = first_gain * (1.0 - straight(query) / path.length());
+        let asks_for_much = gain > config.min_gain;
+        let longest = path.length() * (1.0 - gain.max(config.min_gain));
+        let Some(within) = Shorter::new(query, longest) else {
             break;
         };
+        let samples = config.samples_for(path.length() / straight(query) - 1.0);
         let free = |from: &[f64; D], to: &[f64; D]| {
             within.holds(from) && within.holds(to) && motion_is_free.is_free(from, to)
         };
         let further = RrtConfig {
-            max_iterations: config.samples_for(within.excess(path.length())),
+            max_iterations: if asks_for_much {
+                samples
+            } else {
+                samples.div_ceil(2)
+            },
             try_straight: false,
             ..config.rrt
         };
         let plan = rrt_connect(&within.query, &free, &further, rng)?;
-        let next = refined(plan, motion_is_free, &config.taut)?;
+        let next = refined(plan, motion_is_free, &once)?;
         best.attempts += 1;
         best.checks += next.checks;
-        let Some(shorter) = next.path else { break };
-        if shorter.length() < path.length() {
-            best.path = Some(shorter);
-            best.plan = Plan {
-                goal: next.plan.goal.map(|goal| within.goal_index[goal]),
-                ..next.plan
-            };
+        match next.path {
+            Some(shorter) if shorter.length() < path.length() * (1.0 - config.min_gain) => {
+                best.path = Some(shorter);
+                best.plan = Plan {
+                    goal: next.plan.goal.map(|goal| within.goal_index[goal]),
+                    ..next.plan
+                };
+            }
+            Some(_) => {}
+            None if asks_for_much => first_gain = 0.0,
+            None => break,
         }
     }
+    if let Some(path) = &best.path {
+        let pulled = taut(path, motion_is_free, &config.taut)?;
+        best.checks += pulled.checks;
+        best.path = Some(pulled.path);
+    }
     Ok(best)
+}
+
+/// The straight line to the nearest goal.
+fn straight<const D: usize>(query: &Query<D>) -> f64 {
+    let lengths = query.goals.iter().map(|goal| distance(&query.start, goal));
+    lengths.fold(f64::INFINITY, f64::min)
 }
 
 /// A plan and its path pulled taut.
@@ -206,13 +244,6 @@ impl<const D: usize> Shorter<D> {
         })
     }
 
-    /// By how much a path is longer than the straight line to the nearest goal, as a share of that line.
-    fn excess(&self, length: f64) -> f64 {
-        let goals = self.query.goals.iter();
-        let straight = goals.map(|goal| distance(&self.query.start, goal));
-        length / straight.fold(f64::INFINITY, f64::min) - 1.0
-    }
-
     /// Whether a path through the point can be that short.
     fn holds(&self, point: &[f64; D]) -> bool {
         let to_start = distance(&self.query.start, point);
@@ -250,7 +281,7 @@ mod tests {
     fn a_search_takes_as_many_samples_as_there_is_to_gain() {
         let config = FindPathConfig::default();
         let samples = [0.05, 0.1, 1.0].map(|excess| config.samples_for(excess));
-        assert_eq!(samples, [250, 500, 5_000]);
+        assert_eq!(samples, [23, 90, 9_000]);
         // A start next to its goal, or on it.
         assert_eq!(config.samples_for(f64::INFINITY), 10_000);
         assert_eq!(config.samples_for(f64::NAN), 0);

@@ -156,6 +156,13 @@ fn parameters_out_of_range_are_refused() {
             },
             "min_gain is 1",
         ),
+        (
+            FindPathConfig {
+                first_gain: 1.0,
+                ..pipeline
+            },
+            "first_gain is 1",
+        ),
     ] {
         let query = Query::new(INSIDE, [0.2, 0.2], unit());
         let open = |_: &P, _: &P| true;

@@ -8,6 +8,7 @@
 use std::cell::{Cell, RefCell};
 
 use rand_pcg::Pcg64;
+use rrt_refine::refine::{TautConfig, taut};
 use rrt_refine::{
     Bounds, FindPathConfig, Plan, PlanError, Query, Rrt, RrtConfig, RrtConnect, RrtStar,
     RrtStarConfig, Stop, find_path, rrt, rrt_connect, rrt_star,
@@ -139,7 +140,7 @@ fn the_default_pipeline_says_how_often_it_planned() {
         winding.path.expect("a path"),
         winding.plan.path.expect("it"),
     );
-    assert!(winding.attempts > 1 && winding.attempts <= 6);
+    assert!(winding.attempts > 1 && winding.attempts <= 12);
     assert_eq!(winding.plan.stop, Stop::Reached);
     assert_eq!((path.start(), path.end()), (START, GOAL));
     assert_eq!(path.first_blocked(&free), None);
@@ -176,8 +177,13 @@ fn further_searches_stay_where_a_shorter_path_can_lie_and_take_time_by_what_it_c
             ..FindPathConfig::default()
         };
         let found = find_path(&question(), &free, &config, &mut Pcg64::new(11, 3));
-        let length = found.expect("fair").path.expect("a path").length();
-        (length, motions.into_inner())
+        let raw = found.expect("fair").plan.path.expect("a path");
+        let once = TautConfig {
+            max_rounds: 1,
+            ..config.taut
+        };
+        let once = taut(&raw, &walls, &once).expect("good parameters");
+        (once.path.length(), motions.into_inner())
     };
     let gap = |a: P, b: P| (a[0] - b[0]).hypot(a[1] - b[1]);
     // One wall that is open below: the ellipse is narrow, its box and the bounds are not.
@@ -235,7 +241,7 @@ fn more_attempts_find_the_shorter_side() {
     let length = |attempts: usize, seed: u128| {
         let config = FindPathConfig {
             attempts,
-            min_gain: 0.0,
+            further_iterations: 50_000,
             ..FindPathConfig::default()
         };
         let found = find_path(&question(), &free, &config, &mut Pcg64::new(seed, 3));
@@ -252,8 +258,8 @@ fn more_attempts_find_the_shorter_side() {
     }
     // Over the upper corners: 4.4 long, and two slopes of 0.3 along and 0.1 up; under the lower ones it is 11 % more.
     let shortest = 4.4 + 2.0 * 0.3_f64.hypot(0.1);
-    assert!(lengths.iter().any(|[once, _]| *once > 1.05 * shortest));
-    assert!(lengths.iter().all(|[_, best]| *best < 1.02 * shortest));
+    assert!(lengths.iter().any(|[once, _]| *once > 1.1 * shortest));
+    assert!(lengths.iter().all(|[_, best]| *best < 1.05 * shortest));
 }
 
 #[test]

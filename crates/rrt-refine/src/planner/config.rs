@@ -114,6 +114,12 @@ pub enum ConfigError {
         /// The value.
         value: f64,
     },
+    /// `first_gain` is not a share below 1.
+    #[error("first_gain is {value}; it is a share from 0 to below 1")]
+    FirstGain {
+        /// The value.
+        value: f64,
+    },
     /// `max_nodes` leaves no room for the start.
     #[error("max_nodes is {value}; at least 1 node is needed for the start")]
     MaxNodes {
