@@ -125,8 +125,8 @@ pub(crate) fn queries(
         patch_half_angle: 0.0,
         max_triangle_angle: 0.0,
         hit_log_odds: 0.0,
-        // True lines contradict no point.
-        contradiction_log_odds: f64::INFINITY,
+        // All of these points are where they are said to be.
+        max_blocked_share: 1.0,
         clearance: 0.0,
         ..FreeSpaceConfig::default()
     };
