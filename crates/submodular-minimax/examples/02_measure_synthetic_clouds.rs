@@ -14,7 +14,7 @@ mod labelled;
 
 use labelled::apartment::Apartment;
 use labelled::room::Room;
-use labelled::{Labelled, f1, false_positive_rate};
+use labelled::{Labelled, average_precision, f1, false_positive_rate};
 use std::error::Error;
 use submodular_minimax::{OutlierConfig, remove_outliers};
 
@@ -54,6 +54,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         println!();
     }
+    print!("{:34}", "default, average precision");
+    for cloud in &clouds {
+        let found = remove_outliers(&cloud.points, None, &OutlierConfig::default())?;
+        print!(" {:.3}", average_precision(&found.scores, &cloud.outlier));
+    }
+    println!();
     spread_over_seeds()
 }
 

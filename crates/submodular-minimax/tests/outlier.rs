@@ -472,6 +472,23 @@ fn the_number_of_threads_does_not_matter() {
     }
 }
 
+#[test]
+fn points_out_of_reach_are_ordered_by_how_far_the_nearest_points_are() {
+    let mut points: Vec<[f64; 3]> = (0..400)
+        .map(|i| [f64::from(i % 20), f64::from(i / 20), 0.0])
+        .collect();
+    points.extend([12.0, 9.0, 30.0, 60.0].map(|height| [9.5, 9.5, height]));
+    for config in presets() {
+        let found = remove_outliers(&points, None, &config).unwrap();
+        assert_eq!(found.removed, [400, 401, 402, 403], "{:?}", config.reading);
+        let scores = &found.scores[400..];
+        assert!(
+            scores[0] <= scores[2] && scores[2] < scores[3],
+            "{scores:?}"
+        );
+    }
+}
+
 /// The bits of the scores, recorded: the same on one thread and on many (feature `rayon`).
 #[test]
 fn scores_are_the_same_bits_with_and_without_threads() {
@@ -492,4 +509,4 @@ fn scores_are_the_same_bits_with_and_without_threads() {
     assert_eq!(hash, RECORDED, "recorded without threads");
 }
 
-const RECORDED: u64 = 13994420060141094105;
+const RECORDED: u64 = 14532939915119983006;

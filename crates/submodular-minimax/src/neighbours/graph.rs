@@ -61,6 +61,15 @@ impl NeighbourGraph {
         row[..=at].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
+    /// The mean distance of the up to four nearest neighbours that were found, shown or not; infinite if there are none.
+    pub(crate) fn isolation(&self, v: usize) -> f64 {
+        let found = &self.entries[v * self.width..][..self.width.min(4)];
+        match found.len() {
+            0 => f64::INFINITY,
+            count => found.iter().map(|n| n.0.sqrt()).sum::<f64>() / count as f64,
+        }
+    }
+
     /// How many points there are.
     pub(crate) fn len(&self) -> usize {
         self.count.len()

@@ -48,25 +48,32 @@ pub(super) fn view(cloud: &Cloud, tree: &RangeTree) -> Option<Views> {
 /// Fewer points show no trend.
 const FEWEST: usize = 100;
 
+/// The place of each value in ascending order; equal ones, as in a grid, share the middle of their places.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
     let mut ranks = vec![0.0; values.len()];
-    for (rank, &at) in order.iter().enumerate() {
-        ranks[at] = rank as f64;
+    let mut place = 0;
+    for equal in order.chunk_by(|&a, &b| values[a] == values[b]) {
+        let middle = place as f64 + (equal.len() - 1) as f64 / 2.0;
+        equal.iter().for_each(|&at| ranks[at] = middle);
+        place += equal.len();
     }
     ranks
 }
 
-/// Of two permutations of 0 to n − 1.
+/// Of two sets of ranks from 0 to n − 1; 0 if one has but one.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let middle = (a.len() as f64 - 1.0) / 2.0;
-    let (mut together, mut alone) = (0.0, 0.0);
+    let [mut together, mut alone, mut other] = [0.0; 3];
     for (a, b) in a.iter().zip(b) {
-        together += (a - middle) * (b - middle);
-        alone += (a - middle) * (a - middle);
+        let (a, b) = (a - middle, b - middle);
+        together += a * b;
+        alone += a * a;
+        other += b * b;
     }
-    if alone > 0.0 { together / alone } else { 0.0 }
+    let spread = f64::sqrt(alone * other);
+    if spread > 0.0 { together / spread } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -116,6 +123,20 @@ mod tests {
         let mut points = uneven();
         points.extend((0..40).map(|i| [1.2 + 0.001 * f64::from(i), 0.0, 0.0]));
         assert!(!recognised(&points));
+    }
+
+    #[test]
+    fn equal_spacings_show_no_trend() {
+        assert_eq!(ranks(&[3.0, 1.0, 3.0, 2.0, 3.0]), [3.0, 0.0, 3.0, 1.0, 3.0]);
+        assert_eq!(
+            correlation(&ranks(&[1.0; 5]), &[0.0, 1.0, 2.0, 3.0, 4.0]),
+            0.0
+        );
+        // A floor with a grid of points, seen by nobody, in the frame of its corner.
+        let grid: Vec<[f64; 3]> = (0..400)
+            .map(|i| [f64::from(i % 20), f64::from(i / 20), 0.0])
+            .collect();
+        assert!(!recognised(&grid));
     }
 
     #[test]

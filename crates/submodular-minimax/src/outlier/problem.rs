@@ -71,10 +71,20 @@ impl<G: Borrow<NeighbourGraph>> Problem<G> {
         scores.fold(0.0, f64::max)
     }
 
-    /// The shortfall of every point.
+    /// The shortfall of every point; of those that no point represents the larger, the farther the nearest points are.
     pub(super) fn shortfalls(&self) -> Vec<f64> {
-        let shortfall = |v| self.score.shortfall(self.threshold[v], self.best(v));
-        (0..self.graph.borrow().len()).map(shortfall).collect()
+        let graph = self.graph.borrow();
+        let shortfall = |v| {
+            let best = self.best(v);
+            let beyond = match self.score {
+                Score::Kernel { reach, .. } if best <= 0.0 => {
+                    (graph.isolation(v) / reach).min(f64::MAX)
+                }
+                _ => 0.0,
+            };
+            self.score.shortfall(self.threshold[v], best) + beyond
+        };
+        (0..graph.len()).map(shortfall).collect()
     }
 
     /// Eq. (1) with the truncated scores, λ = θ / (1 + β) and γ = 1/n.

@@ -12,9 +12,10 @@ pub struct OutlierRemoval {
     /// One score a point, higher is more outlying; the removed ones are those at or above 0.
     ///
     /// It is the shortfall θ(v) − max over u of s(u, v) of a point that would join above
-    /// θ = (1 + β) λ, in units of the score s; for the ranged reading, where s = 1 / (1 + badness), it
-    /// is the log of how many times the badness exceeds what is allowed. Where there was nothing to
-    /// measure by, all scores are −1.
+    /// θ = (1 + β) λ, in units of the score s. Points out of every representative's reach fall short by θ
+    /// and, in reaches, the mean distance to the four nearest points, so that they too have an order.
+    /// For the ranged reading, where s = 1 / (1 + badness), it is the log of how many times the badness
+    /// exceeds what is allowed. Where there was nothing to measure by, all scores are −1.
     pub scores: Vec<f64>,
     /// Iterations of Algorithm 1; 1 for the closed form.
     pub iterations: usize,
