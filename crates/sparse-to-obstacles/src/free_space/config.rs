@@ -33,9 +33,12 @@ pub struct FreeSpaceConfig {
     pub patch_half_angle: f64,
     /// Between neighbouring points of a keyframe the space is taken to be seen through as well, where the
     /// angles between them are at most this, in radians. Such triangles count as witnesses, not against
-    /// hits. 0 carves rays only. 0 to 1. Default 0.3 (17 degrees): from 0.1 to 0.3 simulated apartments gain a third of proven
-    /// space, and in 1 to 3 motions come no nearer to true walls; in one of twenty others triangles above 0.2 opened the end of a wall.
+    /// hits. 0 carves rays only. 0 to 1. Default 0.5 (29 degrees), with `max_gap` to bound what such a triangle can miss.
     pub max_triangle_angle: f64,
+    /// A voxel is proven only if one ray at least passed through it, or one triangle whose corners' sight lines are at most this far apart
+    /// there. More than 0. Default 0.4 m: a drone and the end of a wall fit between no such lines. Wider triangles from all along a
+    /// line took the blank end of a wall that was seen end-on, with points on both sides of it, for seen through.
+    pub max_gap: f64,
     /// Largest ratio of the depths of such points: a jump is the edge of something. At least 1. Default
     /// 1.25: at 1.5 a triangle from the last points of a wall to what lies behind its end took the end for seen
     /// through, and a simulated path crossed the wall there.
@@ -60,7 +63,7 @@ pub struct FreeSpaceConfig {
     /// it there. 0 to 1. Default 0.5. 1 trusts all points, contradicted ones too: for maps that drift, in which a wall that
     /// is seen again from elsewhere stands in the way of its own points.
     pub max_blocked_share: f64,
-    /// Most voxels that the grid may hold; each costs 37 bytes. At least 1. Default 8 million (300 MB).
+    /// Most voxels that the grid may hold; each costs 41 bytes. At least 1. Default 8 million (330 MB).
     pub max_voxels: usize,
 }
 
@@ -73,7 +76,8 @@ impl Default for FreeSpaceConfig {
             min_keyframes: 2,
             clearance: 0.22,
             patch_half_angle: 0.0,
-            max_triangle_angle: 0.3,
+            max_triangle_angle: 0.5,
+            max_gap: 0.4,
             max_depth_ratio: 1.25,
             hit_log_odds: 0.85,
             miss_log_odds: 0.4,
@@ -92,6 +96,7 @@ impl FreeSpaceConfig {
         self.resolution *= units_per_metre;
         self.max_range *= units_per_metre;
         self.clearance *= units_per_metre;
+        self.max_gap *= units_per_metre;
         self
     }
 
@@ -128,6 +133,8 @@ impl FreeSpaceConfig {
         let value = self.max_triangle_angle;
         let ok = (0.0..=1.0).contains(&value);
         check("max_triangle_angle", value, ok, "from 0 to 1")?;
+        let value = self.max_gap;
+        check("max_gap", value, value > 0.0, "above 0")?;
         let value = self.max_depth_ratio;
         check("max_depth_ratio", value, value >= 1.0, "at least 1")?;
         let value = self.hit_log_odds;

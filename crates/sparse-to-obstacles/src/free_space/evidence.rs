@@ -26,6 +26,8 @@ pub(super) struct Evidence {
     ended: u16,
     /// The last ray that was counted.
     last_ray: u32,
+    /// Did a ray pass, or a triangle that is narrow here?
+    closely_seen: bool,
 }
 
 impl Evidence {
@@ -38,9 +40,11 @@ impl Evidence {
         }
     }
 
-    /// Remembers a keyframe that saw through, if these points are where the map has them.
+    /// Remembers a keyframe that saw through, if these points are where the map has them; closely along a ray, or between rays that are
+    /// near to each other here.
     #[inline]
-    pub(super) fn witness(&mut self, keyframe: KeyframeId, points: [PointId; 3]) {
+    pub(super) fn witness(&mut self, keyframe: KeyframeId, points: [PointId; 3], closely: bool) {
+        self.closely_seen |= closely;
         if self.witnesses[0] == NOBODY {
             self.shared = points;
         } else if self.shared != [NO_POINT; 3] {
@@ -70,7 +74,8 @@ impl Evidence {
         // together they open a window in whatever stands before it.
         let corroborated = last == 0 || self.shared == [NO_POINT; 3];
         let seen = corroborated && self.witnesses[last] != NOBODY;
-        seen && !self.is_occupied(config)
+        // Wide triangles alone miss what stands between their corners.
+        seen && self.closely_seen && !self.is_occupied(config)
     }
 
     /// Did more rays end here than pass?

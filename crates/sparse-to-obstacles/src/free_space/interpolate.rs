@@ -2,7 +2,7 @@
 //!
 //! Method: 1. the directions of a keyframe's points are projected stereographically from the point
 //! opposite to their mean, which maps circles to circles, so that the planar Delaunay triangulation is
-//! the spherical one; 2. triangles with a long edge or unequal depths are dropped, since the surface
+//! the spherical one; 2. triangles with a wide angle or unequal depths are dropped, since the surface
 //! between their corners is a guess; 3. the others are drawn into a panorama, by which the voxels before
 //! them are found.
 
@@ -32,11 +32,13 @@ pub(super) fn between(sightings: &[Sighting], config: &FreeSpaceConfig) -> Optio
         .filter_map(|face| {
             let vertices = face.vertices().map(|vertex| vertex.data().ray);
             let triangle = vertices.map(|ray| rays[ray]);
-            is_continuous(&triangle, config).then(|| {
+            let width = width(&triangle);
+            (width <= config.max_triangle_angle && is_continuous(&triangle, config)).then(|| {
                 Facet::new(
                     triangle.map(|ray| carved(&ray, config)),
                     face.positions().map(|position| [position.x, position.y]),
                     vertices.map(|ray| sightings[ray].point),
+                    width,
                 )
             })?
         })
@@ -97,16 +99,21 @@ fn flushed(value: f64) -> f64 {
     if value.abs() < 1e-100 { 0.0 } else { value }
 }
 
-fn is_continuous(triangle: &[Ray; 3], config: &FreeSpaceConfig) -> bool {
+/// The widest angle between the corners of a triangle, radians.
+fn width(triangle: &[Ray; 3]) -> f64 {
     let [a, b, c] = triangle.map(|ray| sub(ray.end, ray.origin));
     let angle = |p: Vec3, q: Vec3| crate::vector::norm(cross(p, q)).atan2(dot(p, q));
-    let widest = angle(a, b).max(angle(b, c)).max(angle(c, a));
+    angle(a, b).max(angle(b, c)).max(angle(c, a))
+}
+
+/// Are its depths near enough to each other to be of one surface?
+fn is_continuous(triangle: &[Ray; 3], config: &FreeSpaceConfig) -> bool {
     let depths = triangle.map(|ray| distance(ray.origin, ray.end));
     let deepest = depths.iter().fold(0.0, |most: f64, &depth| most.max(depth));
     let nearest = depths
         .iter()
         .fold(f64::INFINITY, |least: f64, &depth| least.min(depth));
-    widest <= config.max_triangle_angle && deepest <= config.max_depth_ratio * nearest
+    deepest <= config.max_depth_ratio * nearest
 }
 
 #[cfg(test)]
@@ -127,6 +134,7 @@ mod tests {
     fn one_point_opens_no_window_between_rays() {
         let config = FreeSpaceConfig {
             max_triangle_angle: 0.4,
+            max_gap: 1.0,
             clearance: 0.0,
             ..FreeSpaceConfig::default()
         };
@@ -158,5 +166,35 @@ mod tests {
         let [end, other] = [[4.0, 0.05, 0.05], [4.0, 0.05, 0.06]];
         assert_eq!(rays([end, other]), VoxelState::Free);
         assert_eq!(rays([end, end]), VoxelState::Unknown);
+    }
+
+    #[test]
+    fn wide_triangles_alone_prove_nothing() {
+        let rays = two_triangles([4.0, -0.6, 0.05], [4.0, -0.65, 0.05]);
+        let nothing: [Vec3; 0] = [];
+        let state = |max_gap: f64, rays: Vec<Ray>, place: Vec3| {
+            let config = FreeSpaceConfig {
+                max_triangle_angle: 0.4,
+                max_gap,
+                clearance: 0.0,
+                ..FreeSpaceConfig::default()
+            };
+            let space = FreeSpace::from_rays(rays, &nothing, &config).unwrap();
+            space.state(place)
+        };
+        // Both triangles are 1.1 m wide at 4 m: 0.7 m at the nearer place and 0.95 m at the farther one.
+        let [near, far] = [[2.55, 0.05, 0.05], [3.45, 0.05, 0.05]];
+        assert_eq!(state(0.8, rays.clone(), near), VoxelState::Free);
+        assert_eq!(state(0.8, rays.clone(), far), VoxelState::Unknown);
+        assert_eq!(state(1.0, rays.clone(), far), VoxelState::Free);
+        // One ray vouches for them.
+        let ray = Ray {
+            origin: rays[0].origin,
+            end: [4.0, 0.05, 0.05],
+        };
+        assert_eq!(
+            state(0.8, [rays, vec![ray]].concat(), far),
+            VoxelState::Free
+        );
     }
 }

@@ -46,6 +46,8 @@ pub(super) struct Facet {
     corners: [Vec3; 3],
     image: [[f64; 2]; 3],
     points: [PointId; 3],
+    /// The widest angle between the corners, radians.
+    width: f64,
     /// The plane through the corners, towards the keyframe's far side: what is before it has been seen through.
     normal: Vec3,
     offset: f64,
@@ -57,6 +59,7 @@ impl Facet {
         corners: [Vec3; 3],
         image: [[f64; 2]; 3],
         points: [PointId; 3],
+        width: f64,
     ) -> Option<Self> {
         let [a, b, c] = corners;
         let across = cross(sub(b, a), sub(c, a));
@@ -70,10 +73,19 @@ impl Facet {
             corners,
             image,
             points,
+            width,
             normal,
             offset,
         })
     }
+}
+
+/// What a keyframe saw a place between.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    pub(super) corners: [PointId; 3],
+    /// How far apart the lines of sight to the corners are there.
+    pub(super) gap: f64,
 }
 
 /// A pixel's width, in voxels at the farthest corner.
@@ -177,9 +189,9 @@ impl Panorama {
         (place(low), place(high))
     }
 
-    /// The corners of the triangle before which this place lies, as seen from the keyframe.
+    /// The triangle before which this place lies, as seen from the keyframe.
     #[inline]
-    pub(super) fn seen_through(&self, place: Vec3) -> Option<[PointId; 3]> {
+    pub(super) fn seen_through(&self, place: Vec3) -> Option<View> {
         let direction = sub(place, self.origin);
         let length = norm(direction);
         let image = self.projection.of(direction, length)?;
@@ -194,7 +206,10 @@ impl Panorama {
         let facet = self
             .facets
             .get(self.pixels[y * self.size[0] + x] as usize)?;
-        (dot(facet.normal, direction) <= facet.offset).then_some(facet.points)
+        (dot(facet.normal, direction) <= facet.offset).then_some(View {
+            corners: facet.points,
+            gap: facet.width * length,
+        })
     }
 }
 

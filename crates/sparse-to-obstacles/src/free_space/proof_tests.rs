@@ -76,6 +76,7 @@ fn all_lengths_are_scaled_and_nothing_else() {
         resolution: 3.0 * default.resolution,
         max_range: 3.0 * default.max_range,
         clearance: 3.0 * default.clearance,
+        max_gap: 3.0 * default.max_gap,
         ..default
     };
     assert_eq!(scaled, expected);
@@ -115,6 +116,7 @@ fn triangles(turn: f64, corners: [(f64, f64, f64); 3]) -> Vec<Ray> {
 fn between(turn: f64, corners: [(f64, f64, f64); 3], place: Vec3) -> VoxelState {
     let config = FreeSpaceConfig {
         max_triangle_angle: 0.3,
+        max_gap: 2.0,
         ..config()
     };
     space(&triangles(turn, corners), &config).state(place)
