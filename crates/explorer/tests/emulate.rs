@@ -7,7 +7,7 @@
     reason = "a client on a socket, whose failure should say where"
 )]
 
-use std::io::{BufRead as _, BufReader, Read as _};
+use std::io::{BufRead as _, BufReader, ErrorKind, Read as _};
 use std::net::{SocketAddr, UdpSocket};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::time::Duration;
@@ -63,7 +63,13 @@ fn port(socket: &UdpSocket) -> String {
 /// The next datagram, which must come from this address.
 fn hear(socket: &UdpSocket, from: &str) -> Vec<u8> {
     let mut buffer = [0; 2048];
-    let (length, sender) = socket.recv_from(&mut buffer).expect("a datagram");
+    let (length, sender) = loop {
+        match socket.recv_from(&mut buffer) {
+            // A signal, such as the end of another test's process, is no answer.
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            heard => break heard.expect("a datagram"),
+        }
+    };
     assert_eq!(sender.ip().to_string(), from);
     buffer[..length].to_vec()
 }
