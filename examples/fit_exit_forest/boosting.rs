@@ -1,10 +1,6 @@
 //! Gradient boosting of small complete trees for a yes-or-no answer (Friedman 2001, with Newton steps as in XGBoost).
 
-const DEPTH: usize = 4;
-const NODES: usize = (1 << DEPTH) - 1;
-const LEAVES: usize = 1 << DEPTH;
-/// Trees, and the share of each Newton step that is taken.
-const TREES: usize = 300;
+/// The share of each Newton step that is taken.
 const RATE: f64 = 0.1;
 /// Thresholds that are tried for a cue: its quantiles.
 const CELLS: usize = 32;
@@ -12,17 +8,17 @@ const CELLS: usize = 32;
 const PULL: f64 = 2.0;
 const MIN_WEIGHT: f64 = 8.0;
 
-/// A complete tree: node k has the children 2k + 1 (cue at most the threshold) and 2k + 2.
+/// A complete tree: node k has the children 2k + 1 (cue at most the threshold) and 2k + 2. There is one leaf more than nodes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Tree {
+pub(crate) struct Tree<const NODES: usize, const LEAVES: usize> {
     pub(crate) cue: [u8; NODES],
     pub(crate) most: [f32; NODES],
     pub(crate) leaf: [f32; LEAVES],
 }
 
-pub(crate) struct Forest {
+pub(crate) struct Forest<const NODES: usize, const LEAVES: usize> {
     bias: f64,
-    pub(crate) trees: Vec<Tree>,
+    pub(crate) trees: Vec<Tree<NODES, LEAVES>>,
 }
 
 /// Gradient and curvature of the log likelihood.
@@ -50,8 +46,12 @@ impl Slope {
     }
 }
 
-impl Forest {
-    pub(crate) fn fit<const CUES: usize>(cues: &[[f64; CUES]], right: &[bool]) -> Self {
+impl<const NODES: usize, const LEAVES: usize> Forest<NODES, LEAVES> {
+    pub(crate) fn fit<const CUES: usize>(
+        cues: &[[f64; CUES]],
+        right: &[bool],
+        trees: usize,
+    ) -> Self {
         let thresholds = thresholds(cues);
         let cells: Vec<[u8; CUES]> = cues
             .iter()
@@ -60,22 +60,26 @@ impl Forest {
         let share = right.iter().filter(|&&yes| yes).count() as f64 / right.len() as f64;
         let bias = (share / (1.0 - share)).ln();
         let mut odds = vec![bias; cues.len()];
-        let mut trees = Vec::new();
-        for _ in 0..TREES {
+        let mut forest = Vec::new();
+        for _ in 0..trees {
             let slopes: Vec<Slope> = odds.iter().zip(right).map(|(z, y)| slope(*z, *y)).collect();
-            let (tree, leaf_of) = grow(cues, &cells, &slopes, &thresholds);
+            let (tree, leaf_of) = grow::<CUES, NODES, LEAVES>(cues, &cells, &slopes, &thresholds);
             for (z, leaf) in odds.iter_mut().zip(leaf_of) {
                 *z += f64::from(tree.leaf[leaf]);
             }
-            trees.push(tree);
+            forest.push(tree);
         }
-        Self { bias, trees }
+        Self {
+            bias,
+            trees: forest,
+        }
     }
 
     /// Log odds of a candidate about which no tree was asked.
     pub(crate) fn base(&self) -> f64 {
-        let mean =
-            |tree: &Tree| tree.leaf.iter().map(|&x| f64::from(x)).sum::<f64>() / LEAVES as f64;
+        let mean = |tree: &Tree<NODES, LEAVES>| {
+            tree.leaf.iter().map(|&x| f64::from(x)).sum::<f64>() / LEAVES as f64
+        };
         self.bias + self.trees.iter().map(mean).sum::<f64>()
     }
 }
@@ -105,19 +109,19 @@ fn cell(thresholds: &[f32], value: f64) -> u8 {
 }
 
 /// One tree, and the leaf that each example falls into.
-fn grow<const CUES: usize>(
+fn grow<const CUES: usize, const NODES: usize, const LEAVES: usize>(
     cues: &[[f64; CUES]],
     cells: &[[u8; CUES]],
     slopes: &[Slope],
     thresholds: &[Vec<f32>],
-) -> (Tree, Vec<usize>) {
+) -> (Tree<NODES, LEAVES>, Vec<usize>) {
     let mut tree = Tree {
         cue: [0; NODES],
         most: [f32::MAX; NODES],
         leaf: [0.0; LEAVES],
     };
     let mut place = vec![0usize; cues.len()];
-    for level in 0..DEPTH {
+    for level in 0..LEAVES.ilog2() {
         let first = (1 << level) - 1;
         let width = 1 << level;
         let mut sums = vec![[[Slope::default(); CELLS]; CUES]; width];

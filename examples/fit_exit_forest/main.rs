@@ -1,7 +1,7 @@
 //! Fits the score of `exit-finder`'s range-aware rule on generated rooms and prints it as Rust source.
 //!
 //! `cargo run --release -p examples --example fit_exit_forest [-- FIRST_SEED [ROOMS]] > crates/exit-finder/src/rule/forest.rs`
-//! `cargo run --release -p examples --example fit_exit_forest -- 50000 1200 second > crates/exit-finder/src/rule/second_forest.rs`
+//! `cargo run --release -p examples --example fit_exit_forest -- 30000 6500 second > crates/exit-finder/src/rule/second_forest.rs`
 //!
 //! Rooms with one to three doors and as many closed rooms, at outlier rates of 0, 10 and 20 %: of every twelve, eight plain,
 //! two with curved walls, one whose openings lie above counters and one whose doors reach up to the ceiling. Each is looked
@@ -51,11 +51,14 @@ fn main() -> Outcome<()> {
     match std::env::args().nth(3).as_deref() {
         None => {
             let (cues, right) = gathered::<CUES>(seeds, first_looks)?;
-            print(&Forest::fit(&cues, &right), "");
+            print(&Forest::<15, 16>::fit(&cues, &right, 300), "");
         }
         Some("second") => {
             let (cues, right) = gathered::<SECOND_CUES>(seeds, second_looks)?;
-            print(&Forest::fit(&cues, &right), " -- 50000 1200 second");
+            print(
+                &Forest::<31, 32>::fit(&cues, &right, 500),
+                " -- 30000 6500 second",
+            );
         }
         Some(other) => return Err(format!("{other}: give `second` or nothing").into()),
     }
@@ -134,7 +137,11 @@ fn second_looks(mut scan: Scan, rng: &mut Pcg64) -> Outcome<Examples<SECOND_CUES
         ..ExitView::default()
     };
     let plane = AffinePlane::from_up([0.0, 0.0, 1.0], scan.agent)?;
-    let config = ExitConfig::default();
+    // A narrow candidate is no company of wider ones, see `SECOND_CUES`.
+    let config = ExitConfig {
+        min_width: Some(0.6 * scan.scale),
+        ..ExitConfig::default()
+    };
     let found = candidates_of_cleaned(&scan.points, scan.agent, &plane, &view, &config)?;
     let wide = found
         .into_iter()
@@ -213,26 +220,28 @@ fn is_door(opening: &Opening, scan: &Scan, plane: &AffinePlane) -> bool {
         .any(|door| (bearing - door.start + spare).rem_euclid(TAU) < door.width + 2.0 * spare)
 }
 
-fn print(forest: &Forest, arguments: &str) {
+fn print<const NODES: usize, const LEAVES: usize>(forest: &Forest<NODES, LEAVES>, arguments: &str) {
     println!(
         "//! The fitted trees; printed by `cargo run --release -p examples --example fit_exit_forest{arguments}`."
     );
     println!("#![allow(clippy::approx_constant, reason = \"fitted numbers\")]\n");
-    println!("use super::score::Tree;\n");
+    let kind = if LEAVES == 16 { "Shallow" } else { "Deep" };
+    println!("use super::score::{kind};\n");
     println!("/// Log odds of a candidate whose parts are all zero.");
     println!("pub(super) const BASE: f64 = {:?};\n", forest.base());
     println!("#[rustfmt::skip]");
     println!(
-        "pub(super) static TREES: [Tree; {}] = [",
+        "pub(super) static TREES: [{kind}; {}] = [",
         forest.trees.len()
     );
-    for tree in &forest.trees {
-        let most = tree.most.map(|x| format!("{x:?}")).join(", ");
-        let leaf = tree.leaf.map(|x| format!("{x:?}")).join(", ");
-        println!(
-            "    Tree {{ cue: {:?}, most: [{most}], leaf: [{leaf}] }},",
-            tree.cue
-        );
+    for pair in forest.trees.chunks(2) {
+        let trees = pair.iter().map(|tree| {
+            let most = tree.most.map(|x| format!("{x:?}")).join(", ");
+            let leaf = tree.leaf.map(|x| format!("{x:?}")).join(", ");
+            let cue = tree.cue;
+            format!("{kind} {{ cue: {cue:?}, most: [{most}], leaf: [{leaf}] }},")
+        });
+        println!("    {}", trees.collect::<Vec<_>>().join(" "));
     }
     println!("];");
 }

@@ -1,5 +1,6 @@
 //! The rules that tell an opening from a wall, on the finished profile.
 
+mod company;
 mod contour;
 mod cues;
 mod forest;
@@ -71,9 +72,11 @@ pub(crate) fn looked_at_twice(
     view: &ExitView<'_>,
     config: &ExitConfig,
 ) -> Result<Vec<SecondLook>, ExitError> {
-    let of = |profile| candidates_of_profile(profile, view, config);
-    let share = second_look::taken_out(all, kept);
-    Ok(second_look::looked_at_twice(of(all)?, of(kept)?, share))
+    config.validate()?;
+    Ok(match &config.rule {
+        Rule::Paper(_) => Vec::new(),
+        Rule::RangeAware(rule) => range_aware::candidates_of_cleaned(all, kept, rule, view, config),
+    })
 }
 
 /// All stretches of walls that may be openings, with their cues and whatever their probability: what the range-aware rule

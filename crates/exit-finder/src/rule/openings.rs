@@ -3,6 +3,9 @@
 //! Along a wall each bin has a value: votes through it, less votes on it and a few of those before it. The stretch of
 //! the largest sum is a candidate, then the next one beside it, while they are worth anything (Bentley's maximal
 //! subarray). Its jambs are the nearest bins outside it that show the wall. O(bins) per wall and candidate.
+//!
+//! What a vote on the wall counts decides between too wide and too narrow: at a low weight the doubtful rest of a wall that strays
+//! surround is worth nothing rather than less, and is taken together with the door in it. So several weights may be tried, see [`Weights`].
 
 use super::cues::{CUES, Cues};
 use super::sight::Sight;
@@ -27,8 +30,15 @@ pub struct Opening {
 
 /// A wall seen farther than so many median ranges is not searched.
 const FARTHEST: f64 = 0.12;
-/// What a vote on the wall and one before it count against a vote through it.
-const AGAINST: [f64; 2] = [1.5, 0.3];
+/// What a vote on the wall counts against a vote through it; each weight has its candidates.
+pub(super) type Weights = [f64];
+/// At one look.
+pub(super) const ONE_LOOK: &Weights = &[1.5];
+/// At both of two. In generated rooms with 20 % outliers (seeds from 54000, 247 doors) the best candidate of a door has more than 0.7 of
+/// its union with the door in common for 89 % of the doors at 1.5 alone, 96 % with 4 beside it and 98 % with 3 and 8.
+pub(super) const TWO_LOOKS: &Weights = &[1.5, 3.0, 8.0];
+/// What a vote before the wall counts.
+const BEFORE: f64 = 0.3;
 /// Least sum of a candidate.
 const LEAST: f64 = 2.0;
 /// Candidates a wall may have.
@@ -80,10 +90,22 @@ impl<'a> Stretch<'a> {
     }
 
     /// Candidates as places in the stretch, start and end.
-    fn candidates(&self) -> Vec<(usize, usize)> {
+    fn candidates(&self, weights: &Weights) -> Vec<(usize, usize)> {
+        let mut found = Vec::new();
+        for &weight in weights {
+            for candidate in self.candidates_at(weight) {
+                if !found.contains(&candidate) {
+                    found.push(candidate);
+                }
+            }
+        }
+        found
+    }
+
+    fn candidates_at(&self, weight: f64) -> Vec<(usize, usize)> {
         let value = |place: usize| {
             let votes = self.votes(place);
-            votes.through - AGAINST[0] * votes.on - AGAINST[1] * votes.before
+            votes.through - weight * votes.on - BEFORE * votes.before
         };
         let values: Vec<f64> = (0..self.len).map(value).collect();
         let mut used = vec![false; self.len];
@@ -152,6 +174,7 @@ pub(super) fn openings(
     walls: &[Wall],
     unseen: &[bool],
     rule: &RangeAware,
+    weights: &Weights,
 ) -> Vec<Opening> {
     let margin = (rule.margin / profile.bin_width()).round() as usize;
     let mut found = Vec::new();
@@ -159,7 +182,7 @@ pub(super) fn openings(
         let Some(stretch) = Stretch::of(sight, wall) else {
             continue;
         };
-        for inner in stretch.candidates() {
+        for inner in stretch.candidates(weights) {
             let near = stretch.jambs(inner, REACH);
             let far = stretch.jambs(inner, FAR_REACH);
             for jambs in std::iter::once(near).chain((far != near).then_some(far)) {

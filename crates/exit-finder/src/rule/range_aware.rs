@@ -7,7 +7,7 @@
 //! 5. Turn down what is too narrow.
 
 use super::contour::Contour;
-use super::openings::{Opening, openings};
+use super::openings::{ONE_LOOK, Opening, TWO_LOOKS, Weights, openings};
 use super::score::{ScoreParts, bias, second_bias};
 use super::second_look::{SecondLook, looked_at_twice, taken_out};
 use super::sight::Sight;
@@ -40,8 +40,7 @@ pub(super) fn exits_of_cleaned(
     config: &ExitConfig,
 ) -> ExitReport {
     let scene = Scene::new(&all, rule, view, config);
-    let among_kept = candidates(kept, rule, view, config);
-    let found = looked_at_twice(scene.openings(), among_kept, taken_out(&all, kept));
+    let found = scene.twice(&Scene::new(kept, rule, view, config));
     let verdicts = scene.verdicts(scene.likely_by_both(found));
     report(verdicts, all)
 }
@@ -73,7 +72,18 @@ pub(super) fn candidates(
     view: &ExitView<'_>,
     config: &ExitConfig,
 ) -> Vec<Opening> {
-    Scene::new(profile, rule, view, config).openings()
+    Scene::new(profile, rule, view, config).openings(ONE_LOOK)
+}
+
+/// All candidates of both profiles of a map that was cleaned.
+pub(super) fn candidates_of_cleaned(
+    all: &RangeProfile,
+    kept: &RangeProfile,
+    rule: &RangeAware,
+    view: &ExitView<'_>,
+    config: &ExitConfig,
+) -> Vec<SecondLook> {
+    Scene::new(all, rule, view, config).twice(&Scene::new(kept, rule, view, config))
 }
 
 /// A candidate with its parts and its probability.
@@ -127,14 +137,21 @@ impl<'a> Scene<'a> {
         self.contour.n()
     }
 
-    fn openings(&self) -> Vec<Opening> {
+    fn openings(&self, weights: &Weights) -> Vec<Opening> {
         let rule = self.rule;
         let sight = Sight::of(self.profile, rule);
         let walls = walls(&sight, rule.max_walls, rule.min_wall);
         let most = rule.max_relative_width * self.profile.median_range;
-        let mut found = openings(self.profile, &sight, &walls, &self.unseen, rule);
+        let mut found = openings(self.profile, &sight, &walls, &self.unseen, rule, weights);
         found.retain(|opening| opening.width <= most);
         found
+    }
+
+    /// The candidates of this look at all points and of another at the kept ones.
+    fn twice(&self, among_kept: &Self) -> Vec<SecondLook> {
+        let [all, kept] = [self, among_kept].map(|look| look.openings(TWO_LOOKS));
+        let share = taken_out(self.profile, among_kept.profile);
+        looked_at_twice(all, kept, share, self.needed)
     }
 
     fn verdicts(&self, likely: Vec<Judged>) -> Verdicts {
@@ -149,7 +166,7 @@ impl<'a> Scene<'a> {
     /// The openings that are likely enough.
     fn likely(&self) -> Vec<Judged> {
         let (bias, least) = (bias(), self.rule.min_probability);
-        let openings = self.openings().into_iter();
+        let openings = self.openings(ONE_LOOK).into_iter();
         openings
             .filter(|opening| opening.rough_probability(bias) >= least - ROUNDING)
             .map(|opening| {

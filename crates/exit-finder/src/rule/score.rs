@@ -12,15 +12,16 @@ use super::openings::Opening;
 use super::second_forest;
 use super::second_look::SecondLook;
 
-/// Depth of a tree.
-pub(super) const DEPTH: usize = 4;
-
-/// A complete tree: node k has the children 2k + 1 (cue at most the threshold) and 2k + 2.
-pub(super) struct Tree {
-    pub(super) cue: [u8; (1 << DEPTH) - 1],
-    pub(super) most: [f32; (1 << DEPTH) - 1],
-    pub(super) leaf: [f32; 1 << DEPTH],
+/// A complete tree: node k has the children 2k + 1 (cue at most the threshold) and 2k + 2. There is one leaf more than nodes.
+pub(super) struct Tree<const NODES: usize, const LEAVES: usize> {
+    pub(super) cue: [u8; NODES],
+    pub(super) most: [f32; NODES],
+    pub(super) leaf: [f32; LEAVES],
 }
+
+/// A tree of the first look, of depth four, and one of the second, of depth five.
+pub(super) type Shallow = Tree<15, 16>;
+pub(super) type Deep = Tree<31, 32>;
 
 /// Where a score comes from: parts of its log odds, by what was asked. All zero for exits of Algorithm 2; an exit of kind
 /// [`crate::ExitKind::Empty`] has `support` only.
@@ -106,8 +107,11 @@ fn probability(odds: f64) -> f64 {
 }
 
 /// Sum of the leaves that these cues lead to.
-fn leaves(trees: &[Tree], cues: &[f64]) -> f64 {
-    let leaf = |tree: &Tree| f64::from(tree.leaf[leaf_of(tree, cues)]);
+fn leaves<const NODES: usize, const LEAVES: usize>(
+    trees: &[Tree<NODES, LEAVES>],
+    cues: &[f64],
+) -> f64 {
+    let leaf = |tree: &Tree<NODES, LEAVES>| f64::from(tree.leaf[leaf_of(tree, cues)]);
     trees.iter().map(leaf).sum()
 }
 
@@ -170,17 +174,20 @@ pub(super) fn second_bias() -> f64 {
     second_forest::BASE - means(&second_forest::TREES)
 }
 
-fn means(trees: &[Tree]) -> f64 {
+fn means<const NODES: usize, const LEAVES: usize>(trees: &[Tree<NODES, LEAVES>]) -> f64 {
     trees.iter().map(|tree| mean(&tree.leaf)).sum()
 }
 
-fn leaf_of(tree: &Tree, cues: &[f64]) -> usize {
+fn leaf_of<const NODES: usize, const LEAVES: usize>(
+    tree: &Tree<NODES, LEAVES>,
+    cues: &[f64],
+) -> usize {
     let mut node = 0;
-    for _ in 0..DEPTH {
+    while node < NODES {
         let more = cues[usize::from(tree.cue[node])] > f64::from(tree.most[node]);
         node = 2 * node + 1 + usize::from(more);
     }
-    node + 1 - (1 << DEPTH)
+    node - NODES
 }
 
 fn mean(leaves: &[f32]) -> f64 {
@@ -188,10 +195,10 @@ fn mean(leaves: &[f32]) -> f64 {
 }
 
 /// Walks one tree and credits each step to its cue.
-fn credit(tree: &Tree, cues: &[f64; CUES], by_cue: &mut [f64; CUES]) {
+fn credit(tree: &Shallow, cues: &[f64; CUES], by_cue: &mut [f64; CUES]) {
     let (mut node, mut leaves) = (0, &tree.leaf[..]);
     let mut value = mean(leaves);
-    for _ in 0..DEPTH {
+    while leaves.len() > 1 {
         let cue = usize::from(tree.cue[node]);
         let more = cues[cue] > f64::from(tree.most[node]);
         let (low, high) = leaves.split_at(leaves.len() / 2);

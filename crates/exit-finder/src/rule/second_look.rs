@@ -3,12 +3,12 @@
 //! A cleaning errs both ways. With what it took out, walls are hidden among strays; without, far points behind doors are missing. So
 //! candidates are looked for twice and judged together: by their own cues, by how likely each is alone, and by what both looks found in
 //! the same direction and elsewhere. A forest fitted on generated rooms by
-//! `cargo run --release -p examples --example fit_exit_forest -- 50000 1200 second` makes a probability of it. O(candidates²), some thousand pairs.
+//! `cargo run --release -p examples --example fit_exit_forest -- 30000 6500 second` makes a probability of it. O(candidates²), some thousand pairs.
 
+use super::company::{COMPANY, Company, Seen};
 use super::cues::CUES;
 use super::openings::Opening;
 use super::score::bias;
-use crate::angle::turn;
 use crate::profile::RangeProfile;
 
 /// Number of cues of the second look: those of the opening, and these, in this order.
@@ -16,8 +16,11 @@ use crate::profile::RangeProfile;
 /// The log odds by the first look; whether it was among the kept points; the share of the map that the cleaning took out. Then log odds
 /// of other candidates: the largest and the mean in the same direction by the other look; the largest, and how many, by the same look;
 /// the mean of those by the same look that are nearly the same sector; the largest elsewhere; the largest of narrower ones inside that
-/// leave the middle out; the mean of the two largest about.
-pub const SECOND_CUES: usize = CUES + 11;
+/// leave the middle out; the mean of the two largest about. Then, of the candidate of the other look that has most of its sector in common: the common
+/// part over the union, and its log odds. How many openings one expects elsewhere by the same look, and here by the same and by the
+/// other look, weighted by common part over union; by how much the others here are wider, as a logarithm. Last all cues of the
+/// candidate of the other look.
+pub const SECOND_CUES: usize = CUES + 3 + COMPANY;
 
 /// A candidate of a map that was cleaned by its observations, with what two looks say of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,22 +32,6 @@ pub struct SecondLook {
     pub cues: [f64; SECOND_CUES],
 }
 
-/// A candidate as the others see it.
-struct Seen {
-    middle: f64,
-    width: f64,
-    odds: f64,
-    among_kept: bool,
-}
-
-/// Log odds of no candidate, and the largest that count.
-const NONE: f64 = -8.0;
-const SUREST: f64 = 13.8;
-/// Common part over union from which two sectors are nearly the same.
-const ALIKE: f64 = 0.3;
-/// Candidates whose middles are nearer than this are about the same place, radians.
-const ABOUT: f64 = 0.35;
-
 /// Share of the points that the cleaning took out.
 pub(super) fn taken_out(all: &RangeProfile, kept: &RangeProfile) -> f64 {
     1.0 - kept.counts.given as f64 / all.counts.given.max(1) as f64
@@ -55,152 +42,34 @@ pub(super) fn looked_at_twice(
     among_all: Vec<Opening>,
     among_kept: Vec<Opening>,
     taken_out: f64,
+    needed: f64,
 ) -> Vec<SecondLook> {
     let bias = bias();
     let looks = [(&among_all, false), (&among_kept, true)];
-    let seen: Vec<Seen> = looks
+    let seen: Vec<Seen<'_>> = looks
         .into_iter()
         .flat_map(|(found, among_kept)| found.iter().map(move |opening| (opening, among_kept)))
-        .map(|(opening, among_kept)| Seen {
-            middle: opening.sector.middle_rad(),
-            width: opening.sector.width_rad,
-            odds: opening.odds(bias).clamp(-SUREST, SUREST),
-            among_kept,
-        })
+        .map(|(opening, among_kept)| Seen::new(opening, opening.odds(bias), among_kept, needed))
         .collect();
-    let found = among_all.into_iter().chain(among_kept).enumerate();
+    let company: Vec<[f64; COMPANY]> = (0..seen.len())
+        .map(|index| Company::of(index, &seen).to_array())
+        .collect();
+    let own: Vec<[f64; 3]> = seen
+        .iter()
+        .map(|one| [one.odds(), f64::from(u8::from(one.among_kept)), taken_out])
+        .collect();
+    let found = among_all.into_iter().chain(among_kept);
     found
-        .map(|(index, opening)| {
-            let [odds, among_kept] = [
-                seen[index].odds,
-                f64::from(u8::from(seen[index].among_kept)),
-            ];
-            let company = Company::of(index, &seen).to_array();
+        .zip(own.into_iter().zip(company))
+        .map(|(opening, (own, company))| {
             let mut cues = [0.0; SECOND_CUES];
-            let all = opening
-                .cues
-                .into_iter()
-                .chain([odds, among_kept, taken_out]);
-            for (slot, cue) in cues.iter_mut().zip(all.chain(company)) {
+            let all = opening.cues.into_iter().chain(own).chain(company);
+            for (slot, cue) in cues.iter_mut().zip(all) {
                 *slot = f64::from(cue as f32);
             }
             SecondLook { opening, cues }
         })
         .collect()
-}
-
-/// The other candidates, as one of them sees them.
-struct Company {
-    other_look: Largest,
-    same_look: Largest,
-    alike: Largest,
-    elsewhere: Largest,
-    inside: Largest,
-    about: Largest,
-}
-
-impl Company {
-    fn of(index: usize, seen: &[Seen]) -> Self {
-        let mut company = Self {
-            other_look: Largest::default(),
-            same_look: Largest::default(),
-            alike: Largest::default(),
-            elsewhere: Largest::default(),
-            inside: Largest::default(),
-            about: Largest::default(),
-        };
-        let own = &seen[index];
-        let others = seen.iter().enumerate();
-        for (_, other) in others.filter(|&(other, _)| other != index) {
-            company.add(own, other);
-        }
-        company
-    }
-
-    fn add(&mut self, own: &Seen, other: &Seen) {
-        let apart = turn(own.middle, other.middle).abs();
-        let holds = apart < 0.5 * other.width;
-        let is_held = apart < 0.5 * own.width;
-        let same_look = own.among_kept == other.among_kept;
-        match (holds || is_held, same_look) {
-            (true, true) => self.same_look.add(other.odds),
-            (true, false) => self.other_look.add(other.odds),
-            (false, _) => self.elsewhere.add(other.odds),
-        }
-        if !same_look {
-            return;
-        }
-        let narrower = own.width.min(other.width);
-        let common = (0.5 * (own.width + other.width) - apart).clamp(0.0, narrower);
-        if common > ALIKE * (own.width + other.width - common) {
-            self.alike.add(other.odds);
-        }
-        if is_held && !holds && other.width < own.width {
-            self.inside.add(other.odds);
-        }
-        if apart < ABOUT {
-            self.about.add(other.odds);
-        }
-    }
-
-    fn to_array(&self) -> [f64; 8] {
-        let about = if self.about.count > 1.0 {
-            0.5 * (self.about.first + self.about.second)
-        } else {
-            NONE
-        };
-        [
-            self.other_look.first,
-            self.other_look.mean(),
-            self.same_look.first,
-            self.same_look.count,
-            self.alike.mean(),
-            self.elsewhere.first,
-            self.inside.first,
-            about,
-        ]
-    }
-}
-
-/// The two largest of some log odds, their sum and their number.
-struct Largest {
-    first: f64,
-    second: f64,
-    sum: f64,
-    count: f64,
-}
-
-impl Default for Largest {
-    fn default() -> Self {
-        Self {
-            first: NONE,
-            second: NONE,
-            sum: 0.0,
-            count: 0.0,
-        }
-    }
-}
-
-impl Largest {
-    fn add(&mut self, odds: f64) {
-        let first = if self.count > 0.0 { self.first } else { odds };
-        self.second = if self.count > 0.0 {
-            self.second.max(first.min(odds))
-        } else {
-            NONE
-        };
-        self.first = first.max(odds);
-        self.sum += odds;
-        self.count += 1.0;
-    }
-
-    fn mean(&self) -> f64 {
-        if self.count > 0.0 {
-            self.sum / self.count
-        } else {
-            NONE
-        }
-    }
 }
 
 #[cfg(test)]
@@ -223,28 +92,60 @@ mod tests {
     #[test]
     fn a_candidate_is_told_what_both_looks_found_there_and_elsewhere() {
         let among_all = vec![opening(350, 20), opening(352, 4), opening(100, 20)];
-        let among_kept = vec![opening(345, 30)];
+        let mut nearest = opening(345, 30);
+        nearest.cues[3] = 0.5;
         let odds = opening(0, 1).odds(bias());
-        let found = looked_at_twice(among_all, among_kept, 0.2);
+        let other = nearest.odds(bias());
+        let found = looked_at_twice(among_all, vec![nearest.clone()], 0.2, 0.6);
         let company = |index: usize| found[index].cues[CUES + 3..].to_vec();
         let single = |x: f64| f64::from(x as f32);
-        let (odds, share) = (single(odds), single(0.2));
-        assert_eq!(found[0].cues[CUES..CUES + 3], [odds, 0.0, share]);
-        assert_eq!(found[3].cues[CUES..CUES + 3], [odds, 1.0, share]);
-        // The first is seen by the other look, holds the narrower second one but not in its middle, and the third is elsewhere.
-        let expected = [odds, odds, odds, 1.0, NONE, odds, odds, NONE];
-        assert_eq!(company(0), expected);
-        // The third is alone: all others are elsewhere, and none is of the same direction.
-        let expected = [NONE, NONE, NONE, 0.0, NONE, odds, NONE, NONE];
-        assert_eq!(company(2), expected);
-        // Turned by any angle it is the same.
-        let turned = looked_at_twice(
-            vec![opening(50, 20), opening(52, 4), opening(160, 20)],
-            vec![opening(45, 30)],
-            0.2,
+        assert_eq!(
+            found[0].cues[CUES..CUES + 3],
+            [single(odds), 0.0, single(0.2)]
         );
+        assert_eq!(
+            found[3].cues[CUES..CUES + 3],
+            [single(other), 1.0, single(0.2)]
+        );
+        let expected = |odds: f64| odds.exp().ln_1p();
+        let [e, f] = [odds, other].map(expected);
+        // The first is seen by the other look, holds the narrower second one but not in its middle, and the third is elsewhere.
+        let mut first = vec![other, other, odds, 1.0, -8.0, odds, odds, -8.0];
+        first.extend([2.0 / 3.0, other, e, 0.2 * e, 2.0 / 3.0 * f, 0.2f64.ln()]);
+        first.extend(nearest.cues);
+        assert_near(&company(0), &first);
+        // The third is alone: all others are elsewhere, and none is of the same direction.
+        let largest = odds.max(other);
+        let width = 20f64.to_radians();
+        let mut third = vec![-8.0, -8.0, -8.0, 0.0, -8.0, largest, -8.0, -8.0];
+        third.extend([0.0, -8.0, 2.0 * e, 0.0, 0.0, -width.ln()]);
+        third.extend([-8.0; CUES]);
+        assert_near(&company(2), &third);
+        // Turned by any angle it is the same.
+        let mut nearest = opening(45, 30);
+        nearest.cues[3] = 0.5;
+        let turned = vec![opening(50, 20), opening(52, 4), opening(160, 20)];
+        let turned = looked_at_twice(turned, vec![nearest], 0.2, 0.6);
         for (a, b) in found.iter().zip(&turned) {
-            assert_eq!(a.cues, b.cues);
+            assert_near(&a.cues, &b.cues);
+        }
+    }
+
+    #[test]
+    fn a_narrow_candidate_is_no_company() {
+        let narrow = Opening {
+            width: 0.5,
+            ..opening(352, 4)
+        };
+        let found = looked_at_twice(vec![opening(350, 20), narrow], Vec::new(), 0.2, 0.6);
+        let same_look = |index: usize| found[index].cues[CUES + 6];
+        assert_eq!([same_look(0), same_look(1)], [0.0, 1.0]);
+    }
+
+    fn assert_near(given: &[f64], expected: &[f64]) {
+        assert_eq!(given.len(), expected.len());
+        for (index, (a, b)) in given.iter().zip(expected).enumerate() {
+            assert!((a - b).abs() < 1e-5, "{index}: {a} {b}");
         }
     }
 }
