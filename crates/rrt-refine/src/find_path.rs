@@ -7,7 +7,8 @@
 //! it and samples come from the box around it. c lies far below the length at first, near the straight line's: in little space a
 //! much shorter way is found by few samples, if there is one; 4. when that finds nothing, ask for `min_gain` alone, with half the samples, until a search finds nothing, or
 //! `attempts` are made. A search takes as many samples as there is to gain: a number in proportion to the square of what the path is
-//! longer than the straight line; 5. the best path is pulled taut.
+//! longer than the straight line; 5. all are pulled taut, and the shortest is
+//! the answer.
 //! Cost: a search and a round of refinement an attempt, the later ones in less and less space; one check where the straight motion is free.
 //!
 //! References: Kuffner, LaValle 2000 (RRT-Connect); the ellipsoid is that of Gammell, Srinivasa, Barfoot, "Informed RRT*", IROS 2014.
@@ -129,6 +130,7 @@ pub fn find_path<const D: usize>(
         ..config.taut
     };
     let mut best = refined(plan, motion_is_free, &once)?;
+    let mut earlier = Vec::new();
     let mut first_gain = config.first_gain;
     while let Some(path) = &best.path
         && best.attempts < config.attempts
@@ -158,21 +160,37 @@ pub fn find_path<const D: usize>(
         best.checks += next.checks;
         match next.path {
             Some(shorter) if shorter.length() < path.length() * (1.0 - config.min_gain) => {
-                best.path = Some(shorter);
-                best.plan = Plan {
+                let plan = Plan {
                     goal: next.plan.goal.map(|goal| within.goal_index[goal]),
                     ..next.plan
                 };
+                let last = best.path.replace(shorter);
+                earlier.extend(last.zip(Some(std::mem::replace(&mut best.plan, plan))));
             }
             Some(_) => {}
             None if asks_for_much => first_gain = 0.0,
             None => break,
         }
     }
-    if let Some(path) = &best.path {
-        let pulled = taut(path, motion_is_free, &config.taut)?;
+    pulled_taut(best, earlier, motion_is_free, &config.taut)
+}
+
+/// The shortest once all are pulled taut. An earlier one may gain more by it than a later one, and more attempts shall never end longer.
+fn pulled_taut<const D: usize>(
+    mut best: FoundPath<D>,
+    earlier: Vec<(Path<D>, Plan<D>)>,
+    motion_is_free: &impl MotionValidator<D>,
+    config: &TautConfig,
+) -> Result<FoundPath<D>, PlanError> {
+    let last = best.path.take().map(|path| (path, best.plan.clone()));
+    for (path, plan) in last.into_iter().chain(earlier.into_iter().rev()) {
+        let pulled = taut(&path, motion_is_free, config)?;
         best.checks += pulled.checks;
-        best.path = Some(pulled.path);
+        let shorter = |known: &Path<D>| pulled.path.length() < known.length();
+        if best.path.as_ref().is_none_or(shorter) {
+            best.path = Some(pulled.path);
+            best.plan = plan;
+        }
     }
     Ok(best)
 }

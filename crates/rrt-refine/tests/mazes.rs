@@ -241,7 +241,8 @@ fn more_attempts_find_the_shorter_side() {
     let length = |attempts: usize, seed: u128| {
         let config = FindPathConfig {
             attempts,
-            further_iterations: 50_000,
+            further_iterations: 100_000,
+            min_gain: 0.0,
             ..FindPathConfig::default()
         };
         let found = find_path(&question(), &free, &config, &mut Pcg64::new(seed, 3));
@@ -259,7 +260,7 @@ fn more_attempts_find_the_shorter_side() {
     // Over the upper corners: 4.4 long, and two slopes of 0.3 along and 0.1 up; under the lower ones it is 11 % more.
     let shortest = 4.4 + 2.0 * 0.3_f64.hypot(0.1);
     assert!(lengths.iter().any(|[once, _]| *once > 1.1 * shortest));
-    assert!(lengths.iter().all(|[_, best]| *best < 1.05 * shortest));
+    assert!(lengths.iter().all(|[_, best]| *best < 1.02 * shortest));
 }
 
 #[test]
